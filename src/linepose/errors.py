@@ -1,0 +1,26 @@
+"""Errors that a user can act on: one line that says where, what was found, what was expected, what to do."""
+
+
+class LineposeError(Exception):
+    """Base of every error that linepose raises for its user; `str(error)` is one line."""
+
+
+class InputError(LineposeError):
+    """An input that cannot be used.
+
+    `place` names the file and, where there is one, the row, key or column; `remedy` is an imperative.
+    """
+
+    def __init__(self, place: str, found: str, expected: str, remedy: str) -> None:
+        self.place = place
+        self.found = found
+        self.expected = expected
+        self.remedy = remedy
+        super().__init__(f"{place}: found {found}, expected {expected}; {remedy}")
+
+    def __reduce__(self) -> tuple[type["InputError"], tuple[str, str, str, str]]:
+        return (type(self), (self.place, self.found, self.expected, self.remedy))
+
+
+class EstimationError(LineposeError):
+    """A computation that has no usable result: the message names the quantity and the remedy."""

@@ -1,0 +1,1 @@
+"""Pattern points in scans: reading, refining and finding them."""

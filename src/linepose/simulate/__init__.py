@@ -1,0 +1,1 @@
+"""Surveys with a known truth: what a platform would record."""
