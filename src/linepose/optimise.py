@@ -81,7 +81,7 @@ def laplace_covariance(likelihood: Likelihood, optimum: ArrayLike) -> Floats:
     parameters = np.asarray(optimum, dtype=float)
     step = np.full(len(parameters), 1e-4)
     for _ in range(2):
-        covariance = np.linalg.pinv(_hessian(likelihood, parameters, step), hermitian=True)
+        covariance = np.asarray(np.linalg.pinv(_hessian(likelihood, parameters, step), hermitian=True), dtype=float)
         variance = np.diag(covariance)
         if not np.all(np.isfinite(variance)) or np.any(variance <= 0):
             break
