@@ -1,0 +1,123 @@
+"""Repeatability: whether disjoint sets of observations give the same pose (section 4.5, Table 5).
+
+Beyond the paper, which compares two subsets by eye: the distance of the two poses in sigmas with its p-value, the
+same over many random splits, and what each single observation does to the pose.
+"""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from linepose.distance import (
+    euclidean_distance_m,
+    geodesic_angle_rad,
+    mahalanobis_between,
+    mahalanobis_distance,
+    p_value,
+)
+from linepose.errors import EstimationError, InputError
+from linepose.experiments.estimate import Estimate, estimate_by_curvature, observation_list
+from linepose.likelihood.base import Likelihood
+from linepose.optimise import Search
+from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
+
+
+def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> None:
+    """Raise InputError, naming `place`, where two subsets share an observation: then they are not independent."""
+    shared = sorted(set(first) & set(second))
+    if shared:
+        raise InputError(
+            place, f"observation {observation_list(shared)} in both subsets", "disjoint subsets", "remove it from one"
+        )
+
+
+def consistency(first: Estimate, second: Estimate) -> dict[str, float]:
+    """How far two independent estimates lie apart: metres, radians, sigmas, and the p-value of that."""
+    distance = mahalanobis_between(first.pose, first.covariance, second.pose, second.covariance)
+    return {
+        "distance_m": float(euclidean_distance_m(first.pose, second.pose)),
+        "angle_rad": float(geodesic_angle_rad(first.pose, second.pose)),
+        "mahalanobis": distance,
+        "p_value": float(p_value(distance)),
+    }
+
+
+def split_numbers(numbers: ArrayLike, size: int, seed: int, index: int) -> tuple[list[int], list[int]]:
+    """Two disjoint random subsets of `size` numbers each, ascending: a function of the seed and the split's index.
+
+    Raises InputError where there are not enough numbers for two subsets.
+    """
+    available = np.asarray(numbers)
+    if size < 1 or 2 * size > len(available):
+        raise InputError(
+            "repeatability.split_size",
+            f"{size}",
+            f"1 to {len(available) // 2}, half of the {len(available)} accepted observations",
+            "change it",
+        )
+    random = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
+    drawn = random.permutation(available)[: 2 * size]
+    return sorted(drawn[:size].tolist()), sorted(drawn[size:].tolist())
+
+
+def random_splits(
+    likelihood: Likelihood, start: ArrayLike, size: int, indices: Iterable[int], seed: int, search: Search | None = None
+) -> pd.DataFrame:
+    """One row a random split: the two poses, with sigmas from the curvature, and how far they lie apart; start (6,).
+
+    A row depends on the seed and its index alone. Where a subset leaves a direction of the pose open, the row's
+    sigmas and its distance in sigmas are NaN.
+    """
+    rows = []
+    for index in indices:
+        halves = split_numbers(likelihood.survey.number, size, seed, index)
+        row: dict[str, object] = {"split": index}
+        try:
+            first, second = (estimate_by_curvature(likelihood.select(half), start, search) for half in halves)
+            agreement = consistency(first, second)
+        except EstimationError:
+            rows.append(row | {f"observations_{k}": observation_list(half) for k, half in enumerate(halves, 1)})
+            continue
+        for k, estimate in enumerate((first, second), 1):
+            row |= {f"{name}_{k}": value for name, value in estimate.row().items()}
+        rows.append(row | agreement)
+    return pd.DataFrame(rows, columns=list(SPLIT_COLUMNS))
+
+
+def leave_one_out(likelihood: Likelihood, full: Estimate, search: Search | None = None) -> pd.DataFrame:
+    """One row an observation: the pose without it, and its influence, the distance from the full estimate in sigmas."""
+    rows = []
+    numbers = full.number.tolist()
+    for number in numbers:
+        rest = likelihood.select([other for other in numbers if other != number])
+        without = estimate_by_curvature(rest, full.pose, search)
+        rows.append(
+            {
+                "left_out": number,
+                **{name: value for name, value in without.row().items() if name != "observations"},
+                "distance_m": float(euclidean_distance_m(without.pose, full.pose)),
+                "angle_rad": float(geodesic_angle_rad(without.pose, full.pose)),
+                "influence": float(mahalanobis_distance(without.pose, full.pose, full.covariance)),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+_ESTIMATE_COLUMNS = (
+    "n_observations",
+    "observations",
+    *POSE_COLUMNS,
+    *SIGMA_COLUMNS,
+    "neg_log_likelihood",
+    "n_evaluations",
+)
+SPLIT_COLUMNS = (
+    "split",
+    *(f"{name}_{k}" for k in (1, 2) for name in _ESTIMATE_COLUMNS),
+    "distance_m",
+    "angle_rad",
+    "mahalanobis",
+    "p_value",
+)
