@@ -36,7 +36,7 @@ def split_r_hat(samples: Floats) -> Floats:
     return np.sqrt(((half - 1) / half * within + between / half) / within)
 
 
-def diagnose_chain(samples: Floats, acceptance_fraction: float) -> ChainDiagnostics:
+def diagnose_samples(samples: Floats) -> ChainDiagnostics:
     """Diagnostics of samples (S, W, P), with a warning that says what to do, empty where there is nothing to say."""
     n_steps, n_walkers, n_parameters = samples.shape
     time = np.maximum(emcee.autocorr.integrated_time(samples, tol=0, quiet=True), 1.0)
@@ -51,7 +51,7 @@ def diagnose_chain(samples: Floats, acceptance_fraction: float) -> ChainDiagnost
     if r_hat.max() > MAXIMUM_R_HAT:
         warnings.append(f"split R-hat {r_hat.max():.3f} is above {MAXIMUM_R_HAT}: the walkers have not mixed")
     return ChainDiagnostics(
-        acceptance_fraction=acceptance_fraction,
+        acceptance_fraction=acceptance_fraction(samples),
         autocorrelation_time=time,
         effective_sample_size=n_steps * n_walkers / time,
         split_r_hat=r_hat,

@@ -14,6 +14,14 @@ from linepose.errors import InputError
 from linepose.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES
 from linepose.rotations import Floats
 
+SIGMA_COLUMNS: Final = (
+    "sigma_north_m",
+    "sigma_east_m",
+    "sigma_down_m",
+    "sigma_roll_rad",
+    "sigma_pitch_rad",
+    "sigma_yaw_rad",
+)
 _SIZE: Final = 12
 _TOLERANCE: Final = 1e-9  # of the largest entry: what rounding to a file's digits may leave
 
@@ -99,3 +107,8 @@ def associate_covariances(
     matrices = navigation.covariance[index]
     columns = {name: matrices[:, i, j] for name, (i, j) in zip(COVARIANCE_COLUMNS, COVARIANCE_INDICES, strict=True)}
     return points.assign(**columns, nav_gap_s=gap_s)
+
+
+def median_sigma_table(navigation: NavigationCovariances) -> pd.DataFrame:
+    """The median sigmas as a table of one row; columns as in `result_schemas.NAVIGATION_SIGMA`."""
+    return pd.DataFrame([navigation.median_sigma()], columns=list(SIGMA_COLUMNS))

@@ -4,6 +4,7 @@ from typing import Final
 
 import pyarrow as pa
 
+from linepose import navigation
 from linepose.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 
@@ -43,7 +44,8 @@ OPTIMA: Final = pa.schema(
     [
         *_texts("stage"),
         *_whole("n_observations"),
-        *_floats(*POSE_COLUMNS, *LAPLACE_SIGMA_COLUMNS, "neg_log_likelihood", "reduced_chi_square"),
+        *_floats(*POSE_COLUMNS, *LAPLACE_SIGMA_COLUMNS, "neg_log_likelihood", "start_neg_log_likelihood"),
+        *_floats("reduced_chi_square"),
         *_whole("n_evaluations", "degrees_of_freedom"),
         *_flags("converged"),
     ]
@@ -75,9 +77,7 @@ POSE: Final = pa.schema(
         *_whole("n_evaluations"),
     ]
 )
-NAVIGATION_SIGMA: Final = pa.schema(
-    _floats("sigma_north_m", "sigma_east_m", "sigma_down_m", "sigma_roll_rad", "sigma_pitch_rad", "sigma_yaw_rad")
-)
+NAVIGATION_SIGMA: Final = pa.schema(_floats(*navigation.SIGMA_COLUMNS))
 REGRESSION: Final = pa.schema(
     [
         *_texts("quantity"),

@@ -38,6 +38,7 @@ def optimise_stages(
                 **dict(zip(likelihood.parameter_names, optimum.parameters, strict=True)),
                 **dict(zip(LAPLACE_SIGMA_COLUMNS, sigma[:N_PARAMETERS], strict=True)),
                 "neg_log_likelihood": optimum.neg_log_likelihood,
+                "start_neg_log_likelihood": -selected.log_likelihood(likelihood.start(start)),
                 "reduced_chi_square": float(np.nansum(normalised**2)) / max(freedom, 1),
                 "n_evaluations": optimum.n_evaluations,
                 "degrees_of_freedom": freedom,
@@ -108,7 +109,7 @@ def pose_table(
         "n_observations": inliers["n_observations"],
         **dict(zip(POSE_COLUMNS, np.asarray(start, dtype=float), strict=True)),
         **dict(zip(SIGMA_COLUMNS, np.asarray(start_sigma, dtype=float), strict=True)),
-        "neg_log_likelihood": start_fit,
+        "neg_log_likelihood": inliers["start_neg_log_likelihood"],
         "n_evaluations": 1,
     }
     rows = [hand]

@@ -80,7 +80,9 @@ class Platform(Section):
     navigation: NavigationSection = Field(NavigationSection(), description="The navigation system.")
     source: LabelledViewsSection = Field(description="Where the observations come from.")
     noise_model: Literal["published"] = Field("published", description="The likelihood's model of the noise.")
-    published: str | None = Field(None, description="Under which name published.yaml holds numbers of this platform.")
+    published: Literal["ladybird", "ladybird_attitude"] | None = Field(
+        None, description="The published numbers that the results are held against, if any."
+    )
 
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""

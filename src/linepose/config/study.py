@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
-from linepose.config.platform import Platform, load_platform
+from linepose.config.platform import Platform, load_platform, read_yaml
 from linepose.config.schema import Section, validated
 from linepose.optimise import Search
 from linepose.sampling import SamplingSettings
@@ -61,13 +61,17 @@ class Study(Section):
     platforms: list[str] = Field(min_length=1, description="Platforms to run: files of config/platforms.")
     platforms_folder: str = Field("config/platforms", description="Folder of the platform files.")
     published: str = Field("config/published.yaml", description="File of the numbers to regress on.")
-    results_folder: str = Field("results", description="Folder that the results go to.")
     data_folders: list[str] = Field(["data", "../shared"], description="Folders searched for data sets, in this order.")
     datasets: dict[str, str] = Field(default_factory=dict, description="Data sets, name to file of their sums.")
     seed: NonNegativeInt = Field(2017, description="Seed from which every random number is derived.")
     search: SearchSection = Field(SearchSection(), description="Optimisation.")
     outliers: OutliersSection = Field(OutliersSection(), description="Outlier removal.")
     sampling: SamplingSection = Field(SamplingSection(), description="MCMC.")
+
+
+def load_dataset(path: Path) -> DatasetSection:
+    """The data set that a file of config/datasets describes."""
+    return validated(DatasetSection, read_yaml(path), str(path))
 
 
 def check_study(values: dict[str, Any], place: str = "config/config.yaml") -> Study:

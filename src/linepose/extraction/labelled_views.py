@@ -18,6 +18,11 @@ _WHAT: Final = "time (us), point, u (px), north, east, down (m), roll, pitch, ya
 log = logging.getLogger(__name__)
 
 
+def select_views(folder: Path, pattern: str, first: int, step: int) -> list[Path]:
+    """View files that match the pattern, sorted by name, every `step`-th from the `first` (counted from 1)."""
+    return sorted(folder.glob(pattern))[first - 1 :: step]
+
+
 def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
     """All points of all views, the views numbered from 1 in the given order; a point whose u is NaN is left out.
 
