@@ -30,7 +30,7 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     try:
         yield log
     except LineposeError as error:
-        log.error("%s", error)  # noqa: TRY400 - the traceback says nothing to the user
+        log.error("%s", error)
         sys.exit(1)
     except Exception:
         log.exception("unforeseen fault: please report it with this log")

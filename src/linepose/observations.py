@@ -136,7 +136,7 @@ def check_determined(survey: Survey, n_parameters: int) -> None:
     if spare < n_parameters:
         raise InputError(
             "observations",
-            f"{spare} spare equations ({survey.n_observations} observations, {len(used)} points in two or more of them)",
+            f"{spare} spare equations ({survey.n_observations} observations, {len(used)} points in two or more)",
             f"at least {n_parameters}",
             "add observations, or label more points",
         )

@@ -96,11 +96,10 @@ def pose_table(
     sampled_sigma: Mapping[str, Floats],
     start: ArrayLike,
     start_sigma: ArrayLike,
-    start_fit: float,
 ) -> pd.DataFrame:
     """The poses that people ask for: the hand-measured one, then each stage's optimum with its sampled sigma.
 
-    `start` and `start_sigma` (6,) are the hand measurement, `start_fit` its -log L with the inliers.
+    `start` and `start_sigma` (6,) are the hand measurement; its -log L is that of the inliers.
     Columns as in `result_schemas.POSE`.
     """
     inliers = optima.loc[optima["stage"] == "inliers"].iloc[0]

@@ -12,7 +12,9 @@ try:
     PLATFORMS = load_platforms(STUDY, Path())
     DATASETS = {name: load_dataset(Path(sums)) for name, sums in STUDY.datasets.items()}
     FOLDERS = {
-        name: find_dataset(name, list(dataset.sha256), [Path(folder) for folder in STUDY.data_folders])
+        name: find_dataset(
+            name, list(dataset.sha256), [Path(folder) for folder in STUDY.data_folders]
+        )
         or Path(STUDY.data_folders[0]) / name
         for name, dataset in DATASETS.items()
     }
@@ -32,7 +34,9 @@ wildcard_constraints:
 
 def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
-    return PLATFORMS[wildcards.platform].model_dump(mode="json", exclude={"description", "published"})
+    return PLATFORMS[wildcards.platform].model_dump(
+        mode="json", exclude={"description", "published"}
+    )
 
 
 def section(name):

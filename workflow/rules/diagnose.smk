@@ -5,12 +5,12 @@ rule diagnose:
     output:
         diagnostics="results/{platform}/diagnostics.parquet",
         pose="results/{platform}/pose.parquet",
-    params:
-        platform=settings,
-        code=source_digest("linepose.stages"),
     log:
         "results/logs/{platform}/diagnose.log",
     conda:
         "../../environment.yml"
+    params:
+        platform=settings,
+        code=source_digest("linepose.stages"),
     script:
         "../../scripts/diagnose.py"

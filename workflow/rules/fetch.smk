@@ -11,13 +11,13 @@ for _name, _dataset in DATASETS.items():
                 folder=Path(STUDY.data_folders[0]) / _name,
                 file=_dataset.sha256,
             ),
-        params:
-            folder=str(Path(STUDY.data_folders[0]) / _name),
-            searched=STUDY.data_folders,
-            code=source_digest("linepose.datasets"),
         log:
             f"results/logs/fetch_{_name}.log",
         conda:
             "../../environment.yml"
+        params:
+            folder=str(Path(STUDY.data_folders[0]) / _name),
+            searched=STUDY.data_folders,
+            code=source_digest("linepose.datasets"),
         script:
             "../../scripts/fetch.py"

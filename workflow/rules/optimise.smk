@@ -5,13 +5,16 @@ rule optimise:
         compiled="results/compiled.txt",
     output:
         "results/{platform}/optima.parquet",
-    params:
-        platform=settings,
-        search=section("search"),
-        code=[source_digest("linepose.stages"), source_digest("linepose.likelihood.models")],
     log:
         "results/logs/{platform}/optimise.log",
     conda:
         "../../environment.yml"
+    params:
+        platform=settings,
+        search=section("search"),
+        code=[
+            source_digest("linepose.stages"),
+            source_digest("linepose.likelihood.models"),
+        ],
     script:
         "../../scripts/optimise.py"

@@ -1,4 +1,8 @@
-REGRESSED = {name: platform.published for name, platform in PLATFORMS.items() if platform.published}
+REGRESSED = {
+    name: platform.published
+    for name, platform in PLATFORMS.items()
+    if platform.published
+}
 
 
 rule regression:
@@ -10,13 +14,13 @@ rule regression:
     output:
         parquet="results/regression.parquet",
         csv="results/regression.csv",
-    params:
-        published_as=REGRESSED,
-        code=source_digest("linepose.tables.regression"),
     log:
         "results/logs/regression.log",
     conda:
         "../../environment.yml"
+    params:
+        published_as=REGRESSED,
+        code=source_digest("linepose.tables.regression"),
     script:
         "../../scripts/regression.py"
 
@@ -26,11 +30,11 @@ rule check_regression:
         "results/regression.parquet",
     output:
         touch("results/logs/regression.passed"),
-    params:
-        code=source_digest("linepose.tables.regression"),
     log:
         "results/logs/check_regression.log",
     conda:
         "../../environment.yml"
+    params:
+        code=source_digest("linepose.tables.regression"),
     script:
         "../../scripts/check_regression.py"

@@ -6,15 +6,18 @@ rule sample:
         compiled="results/compiled.txt",
     output:
         directory("results/{platform}/mcmc"),
-    params:
-        platform=settings,
-        sampling=section("sampling"),
-        seed=STUDY.seed,
-        code=[source_digest("linepose.stages"), source_digest("linepose.likelihood.models")],
-    threads: 2
     log:
         "results/logs/{platform}/sample.log",
     conda:
         "../../environment.yml"
+    threads: 2
+    params:
+        platform=settings,
+        sampling=section("sampling"),
+        seed=STUDY.seed,
+        code=[
+            source_digest("linepose.stages"),
+            source_digest("linepose.likelihood.models"),
+        ],
     script:
         "../../scripts/sample.py"
