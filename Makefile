@@ -5,7 +5,7 @@ CORES ?= 2
 BIN := .venv/bin
 STAMP := .venv/installed
 
-.PHONY: help reproduce test check bench clean
+.PHONY: help reproduce test check bench lock clean
 
 help: ## What can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -31,6 +31,13 @@ check: $(STAMP) ## Style, types and the workflow's own lint
 
 bench: $(STAMP) ## Measure speed on this machine
 	$(BIN)/python benchmarks/run.py
+
+lock: ## Take the newest versions that fit pyproject.toml into requirements.lock
+	rm -rf .venv-lock
+	$(PYTHON) -m venv .venv-lock
+	.venv-lock/bin/python -m pip install --quiet setuptools '.[development]'
+	.venv-lock/bin/python -m pip freeze --all --exclude pip --exclude linepose > requirements.lock
+	rm -rf .venv-lock
 
 clean: ## Remove results, keep the environment
 	rm -rf results .snakemake

@@ -32,7 +32,7 @@ def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
     if not paths:
         raise InputError("source.views", "no file", "one file a view", "correct the pattern, first and step")
     views = []
-    last_us: int = 0
+    last_us = np.int64(0)
     for number, path in enumerate(paths, start=1):
         view = _read_view(path, n_pixels)
         if view["time_us"].iloc[0] <= last_us:
@@ -42,7 +42,7 @@ def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
                 f"a time after the view before it ({last_us})",
                 "name the files so that their order is that of time",
             )
-        last_us = view["time_us"].max().item()
+        last_us = view["time_us"].max()
         views.append(view.sort_values("point").assign(observation=number))
     return pd.concat(views, ignore_index=True)[["observation", "point", "time_us", "u_px", *_COLUMNS[3:]]]
 

@@ -31,7 +31,7 @@ def _survey() -> Survey:
     return Survey(
         number=np.arange(1, _N_OBSERVATIONS + 1),
         time_us=np.zeros(shape, dtype=np.int64),
-        u_px=300.0 + 60.0 * across,
+        u_px=np.asarray(300.0 + 60.0 * across, dtype=float),
         position_m=position,
         euler_rad=np.zeros((*shape, 3)),
         covariance=np.broadcast_to(1e-4 * np.eye(6), (*shape, 6, 6)).copy(),
