@@ -7,7 +7,6 @@ import emcee
 import numpy as np
 
 from linepose.rotations import Floats
-from linepose.sampling import Chain
 
 MAXIMUM_R_HAT: Final = 1.01
 MINIMUM_STEPS_PER_TIME: Final = 50  # emcee's rule for a trustworthy autocorrelation time
@@ -15,12 +14,13 @@ MINIMUM_STEPS_PER_TIME: Final = 50  # emcee's rule for a trustworthy autocorrela
 
 @dataclass(frozen=True)
 class ChainDiagnostics:
-    """Diagnostics of one chain of P parameters; autocorrelation time in steps."""
+    """Diagnostics of one chain of P parameters; autocorrelation time in steps, sigma in the parameters' units."""
 
     acceptance_fraction: float
     autocorrelation_time: Floats
     effective_sample_size: Floats
     split_r_hat: Floats
+    sigma: Floats
     warning: str
 
 
@@ -36,11 +36,11 @@ def split_r_hat(samples: Floats) -> Floats:
     return np.sqrt(((half - 1) / half * within + between / half) / within)
 
 
-def diagnose_chain(chain: Chain) -> ChainDiagnostics:
-    """Diagnostics of a chain, with a warning that says what to do, empty where there is nothing to say."""
-    n_steps, n_walkers, _ = chain.parameters.shape
-    time = np.maximum(emcee.autocorr.integrated_time(chain.parameters, tol=0, quiet=True), 1.0)
-    r_hat = split_r_hat(chain.parameters)
+def diagnose_samples(samples: Floats) -> ChainDiagnostics:
+    """Diagnostics of samples (S, W, P), with a warning that says what to do, empty where there is nothing to say."""
+    n_steps, n_walkers, n_parameters = samples.shape
+    time = np.maximum(emcee.autocorr.integrated_time(samples, tol=0, quiet=True), 1.0)
+    r_hat = split_r_hat(samples)
     warnings = []
     needed = int(np.ceil(MINIMUM_STEPS_PER_TIME * time.max()))
     if n_steps < needed:
@@ -51,9 +51,15 @@ def diagnose_chain(chain: Chain) -> ChainDiagnostics:
     if r_hat.max() > MAXIMUM_R_HAT:
         warnings.append(f"split R-hat {r_hat.max():.3f} is above {MAXIMUM_R_HAT}: the walkers have not mixed")
     return ChainDiagnostics(
-        acceptance_fraction=float(chain.acceptance_fraction.mean()),
+        acceptance_fraction=acceptance_fraction(samples),
         autocorrelation_time=time,
         effective_sample_size=n_steps * n_walkers / time,
         split_r_hat=r_hat,
+        sigma=samples.reshape(-1, n_parameters).std(axis=0, ddof=1),
         warning="; ".join(warnings),
     )
+
+
+def acceptance_fraction(samples: Floats) -> float:
+    """Share of steps in which a walker moved; (S, W, P)."""
+    return float(np.any(np.diff(samples, axis=0) != 0, axis=2).mean())

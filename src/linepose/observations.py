@@ -21,7 +21,7 @@ EULER_COLUMNS: Final = ("roll_rad", "pitch_rad", "yaw_rad")
 _AXES: Final = ("north", "east", "down", "roll", "pitch", "yaw")
 COVARIANCE_INDICES: Final = tuple((i, j) for i in range(6) for j in range(i, 6))
 COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}" for i, j in COVARIANCE_INDICES)
-MINIMUM_OBSERVATIONS: Final = 2  # a point needs two rays
+_RAYS_PER_POINT: Final = 2
 
 
 @dataclass(frozen=True)
@@ -126,3 +126,17 @@ def table_from_survey(survey: Survey) -> pd.DataFrame:
     columns |= {name: covariance[:, i, j] for name, (i, j) in zip(COVARIANCE_COLUMNS, COVARIANCE_INDICES, strict=True)}
     columns["nav_gap_s"] = survey.nav_gap_s[row, column]
     return pd.DataFrame(columns)
+
+
+def check_determined(survey: Survey, n_parameters: int) -> None:
+    """Raise InputError where the views are too few for the pose: 2 equations a view of a point, 3 unknowns a point."""
+    views = np.isfinite(survey.u_px).sum(axis=0)
+    used = views[views >= _RAYS_PER_POINT]
+    spare = int(2 * used.sum() - 3 * len(used))
+    if spare < n_parameters:
+        raise InputError(
+            "observations",
+            f"{spare} spare equations ({survey.n_observations} observations, {len(used)} points in two or more)",
+            f"at least {n_parameters}",
+            "add observations, or label more points",
+        )

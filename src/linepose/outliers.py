@@ -4,11 +4,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from linepose.errors import EstimationError
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Optimum, Search, optimise
+from linepose.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.rotations import Floats
 
 
@@ -62,3 +64,47 @@ def accepted_stage(stages: list[RejectionStage], threshold_px: float) -> int:
         f"error of {np.nanmax(last.error_px):.1f} px, expected below {threshold_px:g} px; check the labels and the "
         "navigation, or raise outliers.threshold_px"
     )
+
+
+def outlier_table(stages: list[RejectionStage], threshold_px: float) -> pd.DataFrame:
+    """One row an observation of a stage: its mean error, whether it is the one removed, whether the stage is accepted.
+
+    Columns as in `result_schemas.OUTLIERS`; the last stage removes none.
+    """
+    accepted = accepted_stage(stages, threshold_px)
+    rows = []
+    for index, stage in enumerate(stages):
+        pose = stage.optimum.parameters[:N_PARAMETERS]
+        for number, error_px in zip(stage.number, stage.error_px, strict=True):
+            rows.append(
+                {
+                    "n_observations": len(stage.number),
+                    "observation": int(number),
+                    "error_px": float(error_px),
+                    "removed": index < len(stages) - 1 and int(number) == stage.worst,
+                    "accepted": index == accepted,
+                    "neg_log_likelihood": stage.optimum.neg_log_likelihood,
+                    **dict(zip(POSE_COLUMNS, pose, strict=True)),
+                    "n_evaluations": stage.optimum.n_evaluations,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def stage_observations(outliers: pd.DataFrame) -> dict[str, list[int]]:
+    """Observation numbers of each stage from all to the accepted one: `all`, `observations_24`, ..., `inliers`."""
+    sizes = sorted(outliers["n_observations"].unique(), reverse=True)
+    accepted = int(outliers.loc[outliers["accepted"], "n_observations"].iloc[0])
+    between = {f"observations_{n}": n for n in sizes if accepted < n < sizes[0]}
+    names = {"all": sizes[0], **between, "inliers": accepted}
+    return {
+        name: outliers.loc[outliers["n_observations"] == n, "observation"].astype(int).tolist()
+        for name, n in names.items()
+    }
+
+
+def removal_order(outliers: pd.DataFrame) -> list[int]:
+    """Observations in the order in which they are removed until the accepted stage."""
+    accepted = int(outliers.loc[outliers["accepted"], "n_observations"].iloc[0])
+    removed = outliers[outliers["removed"] & (outliers["n_observations"] > accepted)]
+    return removed.sort_values("n_observations", ascending=False)["observation"].astype(int).tolist()

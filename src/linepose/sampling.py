@@ -74,3 +74,8 @@ def sample(
         log_likelihood=sampler.get_log_prob(),
         acceptance_fraction=sampler.acceptance_fraction,
     )
+
+
+def stage_seed(seed: int, *key: int) -> int:
+    """A seed of its own for each stage or experiment, from the study's seed and whole numbers that name it."""
+    return int(np.random.SeedSequence([seed, *key]).generate_state(1)[0])

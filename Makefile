@@ -1,0 +1,43 @@
+# Two commands do all: `make reproduce` and `make test`. Python 3.11 or newer and make are all they need.
+
+PYTHON ?= python3
+CORES ?= 2
+BIN := .venv/bin
+STAMP := .venv/installed
+
+.PHONY: help reproduce test check bench lock clean
+
+help: ## What can be made
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+$(STAMP): pyproject.toml requirements.lock
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+reproduce: $(STAMP) ## Run every experiment; results go to results/
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
+
+test: $(STAMP) ## Run the tests
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest
+
+check: $(STAMP) ## Style, types and the workflow's own lint
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakefmt --check Snakefile workflow
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
+
+bench: $(STAMP) ## Measure speed on this machine
+	$(BIN)/python benchmarks/run.py
+
+lock: ## Take the newest versions that fit pyproject.toml into requirements.lock
+	rm -rf .venv-lock
+	$(PYTHON) -m venv .venv-lock
+	.venv-lock/bin/python -m pip install --quiet setuptools '.[development]'
+	.venv-lock/bin/python -m pip freeze --all --exclude pip --exclude linepose > requirements.lock
+	rm -rf .venv-lock
+
+clean: ## Remove results, keep the environment
+	rm -rf results .snakemake

@@ -1,0 +1,32 @@
+# linepose: from what camera and navigation system recorded to the camera's pose. A table of contents.
+
+from snakemake.utils import min_version
+
+min_version("9.0")
+
+
+configfile: "config/config.yaml"
+
+
+container: None
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/fetch.smk"
+include: "workflow/rules/compile.smk"
+include: "workflow/rules/extract.smk"
+include: "workflow/rules/associate.smk"
+include: "workflow/rules/reject_outliers.smk"
+include: "workflow/rules/optimise.smk"
+include: "workflow/rules/sample.smk"
+include: "workflow/rules/diagnose.smk"
+include: "workflow/rules/regression.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        expand("results/{platform}/pose.parquet", platform=PLATFORMS),
+        expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
+        "results/regression.parquet",
+        "results/logs/regression.passed",

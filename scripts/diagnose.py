@@ -1,0 +1,31 @@
+"""Judge each chain, and put the poses with their sigmas into one table."""
+
+from pathlib import Path
+
+import numpy as np
+from adapter import stage
+from snakemake.script import snakemake
+
+with stage(snakemake) as log:
+    from linepose.config.platform import Platform
+    from linepose.diagnostics import diagnose_samples
+    from linepose.pose import POSE_COLUMNS
+    from linepose.result_schemas import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
+    from linepose.stages import diagnostics_table, pose_table, samples_from_table
+    from linepose.storage import read_table, write_table
+
+    platform = Platform.model_validate(snakemake.params.platform)
+    optima = read_table(snakemake.input.optima, OPTIMA)
+    chains = {
+        name: diagnose_samples(
+            samples_from_table(read_table(Path(snakemake.input.samples) / f"{name}.parquet", SAMPLES), POSE_COLUMNS)
+        )
+        for name in optima["stage"]
+    }
+    write_table(diagnostics_table(optima, chains), snakemake.output.diagnostics, DIAGNOSTICS)
+    sigma = np.sqrt(np.diag(platform.start_covariance()))
+    poses = pose_table(optima, {name: chain.sigma for name, chain in chains.items()}, platform.start_pose(), sigma)
+    write_table(poses, snakemake.output.pose, POSE)
+    for name in ("all", "inliers"):
+        if chains[name].warning:
+            log.warning("%s: %s", name, chains[name].warning)

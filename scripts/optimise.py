@@ -1,0 +1,24 @@
+"""Find the most likely pose at each stage of the outlier removal."""
+
+from adapter import stage
+from snakemake.script import snakemake
+
+with stage(snakemake) as log:
+    from linepose.config.platform import Platform
+    from linepose.config.study import SearchSection
+    from linepose.likelihood.models import likelihood_of
+    from linepose.observations import survey_from_table
+    from linepose.outliers import stage_observations
+    from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, with_parameters
+    from linepose.stages import optimise_stages
+    from linepose.storage import read_table, write_table
+
+    platform = Platform.model_validate(snakemake.params.platform)
+    search = SearchSection.model_validate(snakemake.params.search).settings()
+    survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
+    optima = optimise_stages(likelihood, stages, platform.start_pose(), search)
+    write_table(optima, snakemake.output[0], with_parameters(OPTIMA, likelihood.parameter_names[6:]))
+    for _, optimum in optima.iterrows():
+        log.info("%s: -log L %.6f", optimum["stage"], optimum["neg_log_likelihood"])

@@ -1,0 +1,23 @@
+"""Remove the worst observation again and again, and note which stage is accepted."""
+
+from adapter import stage
+from snakemake.script import snakemake
+
+with stage(snakemake) as log:
+    from linepose.config.platform import Platform
+    from linepose.config.study import OutliersSection, SearchSection
+    from linepose.likelihood.models import likelihood_of
+    from linepose.observations import survey_from_table
+    from linepose.outliers import outlier_table, reject_outliers, removal_order
+    from linepose.result_schemas import OBSERVATIONS, OUTLIERS
+    from linepose.storage import read_table, write_table
+
+    platform = Platform.model_validate(snakemake.params.platform)
+    outliers = OutliersSection.model_validate(snakemake.params.outliers)
+    search = SearchSection.model_validate(snakemake.params.search).settings()
+    survey = survey_from_table(read_table(snakemake.input[0], OBSERVATIONS))
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    stages = reject_outliers(likelihood, platform.start_pose(), outliers.minimum_observations, search)
+    table = outlier_table(stages, outliers.threshold_px)
+    write_table(table, snakemake.output[0], OUTLIERS)
+    log.info("removed in this order: %s", ", ".join(map(str, removal_order(table))) or "none")

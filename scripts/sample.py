@@ -1,0 +1,32 @@
+"""Sample the posterior of the pose at each stage of the outlier removal."""
+
+from pathlib import Path
+
+from adapter import stage
+from snakemake.script import snakemake
+
+with stage(snakemake) as log:
+    from linepose.config.platform import Platform
+    from linepose.config.study import SamplingSection
+    from linepose.likelihood.models import likelihood_of
+    from linepose.observations import survey_from_table
+    from linepose.outliers import stage_observations
+    from linepose.progress import shown
+    from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, SAMPLES, with_parameters
+    from linepose.sampling import sample, stage_seed
+    from linepose.stages import sample_table
+    from linepose.storage import read_table, write_table
+
+    platform = Platform.model_validate(snakemake.params.platform)
+    settings = SamplingSection.model_validate(snakemake.params.sampling).settings()
+    survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
+    names = likelihood.parameter_names
+    optima = read_table(snakemake.input.optima, OPTIMA).set_index("stage")[list(names)]
+    schema = with_parameters(SAMPLES, names[6:])
+    for name, numbers in stages.items():
+        seed = stage_seed(snakemake.params.seed, len(numbers))
+        chain = sample(likelihood.select(numbers), optima.loc[name], seed, settings, shown())
+        write_table(sample_table(chain, names), Path(snakemake.output[0]) / f"{name}.parquet", schema)
+        log.info("%s: %d samples, acceptance %.2f", name, chain.log_likelihood.size, chain.acceptance_fraction.mean())

@@ -1,0 +1,144 @@
+"""The platform file: one camera on one vehicle, what it recorded, and how its data are to be read."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import yaml
+from pydantic import Field, PositiveFloat, PositiveInt
+
+from linepose.camera import Camera, CameraSigmas
+from linepose.config.schema import Section, validated
+from linepose.errors import InputError
+from linepose.pose import rotation_vector_covariance, rotation_vector_pose
+from linepose.rotations import Floats
+
+Triple = tuple[float, float, float]
+NonNegative = Annotated[float, Field(ge=0)]
+
+
+class SigmasSection(Section):
+    """One standard deviation of each camera quantity."""
+
+    u_px: PositiveFloat = Field(0.5, description="Of a point's position along the scan line (px).")
+    v_px: PositiveFloat = Field(0.5, description="Of a point's position across the scan line (px).")
+    principal_point_px: NonNegative = Field(2.0, description="Of the principal point (px).")
+    focal_length_m: NonNegative = Field(1e-4, description="Of the focal length (m).")
+    k1: NonNegative = Field(0.0, description="Of the first radial distortion coefficient (no unit).")
+    k2: NonNegative = Field(0.0, description="Of the second radial distortion coefficient (no unit).")
+
+
+class CameraSection(Section):
+    """Intrinsic parameters of the line-scan camera."""
+
+    focal_length_m: PositiveFloat = Field(description="Focal length (m).")
+    pixel_pitch_m: PositiveFloat = Field(description="Width of a pixel on the sensor (m).")
+    n_pixels: PositiveInt = Field(description="Pixels of a scan line.")
+    principal_point_px: float = Field(description="Where the optical axis meets the line (px, counted from 0).")
+    k1: float = Field(0.0, description="First radial distortion coefficient (no unit).")
+    k2: float = Field(0.0, description="Second radial distortion coefficient (no unit).")
+    sigmas: SigmasSection = Field(SigmasSection(), description="One standard deviation of each.")
+
+
+class HandMeasuredSection(Section):
+    """The camera's pose on the vehicle as read from a tape measure: the start of the search."""
+
+    position_m: Triple = Field(description="Camera in the body frame: forward, right, down (m).")
+    euler_deg: Triple = Field(description="Camera to body: roll, pitch, yaw, zyx intrinsic (deg).")
+    sigma_position_m: PositiveFloat = Field(0.1, description="One standard deviation of each coordinate (m).")
+    sigma_euler_deg: PositiveFloat = Field(2.0, description="One standard deviation of each angle (deg).")
+
+
+class NavigationSection(Section):
+    """How the navigation system's solution is read."""
+
+    covariance_columns: tuple[int, int, int] = Field(
+        (3, 4, 5), description="Rows and columns of the 12x12 covariance that hold roll, pitch, yaw (counted from 0)."
+    )
+    maximum_gap_s: PositiveFloat = Field(
+        1.0, description="Largest time between a point and the covariance used for it (s)."
+    )
+
+
+class LabelledViewsSection(Section):
+    """Labelled points that already carry the body pose: CSV files, one a view of the pattern."""
+
+    kind: Literal["labelled_views"] = Field(description="Points labelled by hand, one CSV file a view.")
+    dataset: str = Field(description="Data set, as named in the study's configuration.")
+    views: str = Field("labelled_points/*.csv", description="View files below the data set's folder, sorted by name.")
+    first: PositiveInt = Field(1, description="The first view file that is used (counted from 1).")
+    step: PositiveInt = Field(1, description="Every how many-th view file is used.")
+    covariances: str = Field("nav_covs.csv", description="File of the navigation covariances: time (us), 12x12.")
+
+
+class Platform(Section):
+    """One platform: a camera on a vehicle and what it recorded."""
+
+    description: str = Field("", description="One line for people.")
+    camera: CameraSection = Field(description="Intrinsic parameters.")
+    hand_measured: HandMeasuredSection = Field(description="The pose from the tape measure.")
+    navigation: NavigationSection = Field(NavigationSection(), description="The navigation system.")
+    source: LabelledViewsSection = Field(description="Where the observations come from.")
+    noise_model: Literal["published"] = Field("published", description="The likelihood's model of the noise.")
+    published: Literal["ladybird", "ladybird_attitude"] | None = Field(
+        None, description="The published numbers that the results are held against, if any."
+    )
+
+    def intrinsics(self) -> Camera:
+        """The camera that geometry works with."""
+        values = self.camera.model_dump()
+        return Camera(**(values | {"sigmas": CameraSigmas(**values["sigmas"])}))
+
+    def start_pose(self) -> Floats:
+        """The hand-measured pose with a rotation vector (6,)."""
+        return rotation_vector_pose(self._hand_measured_euler_pose())
+
+    def start_covariance(self) -> Floats:
+        """Covariance of the hand-measured pose with a rotation vector (6, 6)."""
+        hand = self.hand_measured
+        sigma = np.repeat([hand.sigma_position_m, np.deg2rad(hand.sigma_euler_deg)], 3)
+        return rotation_vector_covariance(self._hand_measured_euler_pose(), np.diag(sigma**2))
+
+    def _hand_measured_euler_pose(self) -> Floats:
+        return np.concatenate([self.hand_measured.position_m, np.deg2rad(self.hand_measured.euler_deg)])
+
+
+def load_platform(folder: Path, name: str) -> Platform:
+    """The platform of config/platforms/NAME.yaml; `like: OTHER` takes all that the file does not say from OTHER's.
+
+    Raises InputError for a file that is missing, is not YAML, or says something that no platform has.
+    """
+    return validated(Platform, _merged_values(folder, name, []), str(folder / f"{name}.yaml"))
+
+
+def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:
+    path = folder / f"{name}.yaml"
+    if name in seen:
+        raise InputError(f"{path}: like", f"a circle {' -> '.join([*seen, name])}", "an end", "remove one `like`")
+    values = read_yaml(path)
+    parent = values.pop("like", None)
+    return values if parent is None else _overlaid(_merged_values(folder, parent, [*seen, name]), values)
+
+
+def _overlaid(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    merged = dict(below)
+    for key, value in above.items():
+        both = isinstance(value, dict) and isinstance(below.get(key), dict)
+        merged[key] = _overlaid(below[key], value) if both else value
+    return merged
+
+
+def read_yaml(path: Path) -> dict[str, Any]:
+    """A YAML file's mapping; raises InputError for a file that is missing, broken, or holds something else."""
+    if not path.is_file():
+        near = sorted(p.stem for p in path.parent.glob("*.yaml"))
+        raise InputError(
+            str(path), "no such file", f"one of {', '.join(near) or 'none'}", "create it or correct the name"
+        )
+    try:
+        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except yaml.YAMLError as error:
+        raise InputError(str(path), " ".join(str(error).split()), "YAML", "correct the file") from None
+    if not isinstance(values, dict):
+        raise InputError(str(path), type(values).__name__, "keys and values", "write `key: value` lines")
+    return values

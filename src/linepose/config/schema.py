@@ -1,0 +1,61 @@
+"""What stands below both schemas: a closed model, and its faults told in one line."""
+
+import difflib
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
+
+from linepose.errors import InputError
+
+
+class Section(BaseModel):
+    """A part of the configuration in which an unknown key is an error."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+Model = TypeVar("Model", bound=Section)
+
+
+def validated(model: type[Model], values: Any, place: str) -> Model:
+    """The values as a model; raises InputError naming the place, the key and what was expected there."""
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        raise _one_line(model, error.errors()[0], place) from None
+
+
+def _one_line(model: type[Section], fault: ErrorDetails, place: str) -> InputError:
+    location = [str(part) for part in fault["loc"]]
+    where = f"{place}: {'.'.join(location) or 'top level'}"
+    if fault["type"] == "extra_forbidden":
+        known = _keys_at(model, location[:-1])
+        near = difflib.get_close_matches(location[-1], known, n=1)
+        remedy = f"did you mean {near[0]}?" if near else "remove it"
+        return InputError(where, "an unknown key", f"one of {', '.join(known)}" if known else "no such key", remedy)
+    if fault["type"] == "missing":
+        return InputError(where, "no such key", "a value", "add the key")
+    return InputError(where, repr(fault["input"]), _lower_first(fault["msg"]), "correct the value")
+
+
+def _lower_first(text: str) -> str:
+    return text[:1].lower() + text[1:]
+
+
+def _keys_at(model: type[Section], location: list[str]) -> list[str]:
+    """Keys of the sub-model that a location leads to, as far as the schema tells."""
+    definitions = model.model_json_schema(by_alias=True)
+    node = definitions
+    for part in location:
+        node = _resolved(node, definitions)
+        options = [_resolved(option, definitions) for option in node.get("anyOf", node.get("oneOf", [node]))]
+        node = next((o["properties"][part] for o in options if part in o.get("properties", {})), {})
+    node = _resolved(node, definitions)
+    options = [_resolved(option, definitions) for option in node.get("anyOf", node.get("oneOf", [node]))]
+    return [key for option in options for key in option.get("properties", {})]
+
+
+def _resolved(node: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any]:
+    reference = node.get("$ref")
+    return definitions["$defs"][reference.rsplit("/", 1)[-1]] if reference else node

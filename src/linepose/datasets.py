@@ -1,0 +1,65 @@
+"""Public data sets: found in a folder or downloaded, and checked file by file against their sums."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import pooch
+import requests
+
+from linepose.errors import InputError
+
+
+def find_dataset(name: str, files: Sequence[str], folders: Sequence[Path]) -> Path | None:
+    """The first folder that has this data set, or None; raises InputError where one has only a part of it."""
+    for folder in folders:
+        candidate = folder / name
+        if candidate.is_dir():
+            for file in files:
+                if not (candidate / file).is_file():
+                    raise InputError(
+                        str(candidate / file),
+                        "no such file",
+                        f"all {len(files)} files of the data set {name}",
+                        f"complete the folder, or remove {candidate} to have it downloaded",
+                    )
+            return candidate
+    return None
+
+
+def check_dataset(folder: Path, sha256: Mapping[str, str]) -> None:
+    """Compare each file with its sum; raises InputError naming the first that is missing or differs."""
+    for file, expected in sha256.items():
+        path = folder / file
+        if not path.is_file():
+            raise InputError(str(path), "no such file", "a file of the data set", "restore it")
+        found = hashlib.sha256(path.read_bytes()).hexdigest()
+        if found != expected:
+            raise InputError(
+                str(path),
+                f"sha256 {found[:12]}... ({path.stat().st_size} bytes)",
+                f"sha256 {expected[:12]}...",
+                "the file is altered or truncated: restore it from the source",
+            )
+
+
+def download_dataset(
+    name: str, base_url: str, sha256: Mapping[str, str], urls: Mapping[str, str], folder: Path, searched: Sequence[Path]
+) -> None:
+    """Download a data set into a folder, every file checked; raises InputError where it cannot be had."""
+    fetcher = pooch.create(path=folder, base_url=base_url, registry=dict(sha256), urls=dict(urls), retry_if_failed=1)
+    for file in sha256:
+        try:
+            fetcher.fetch(file)
+        except (requests.RequestException, OSError) as error:
+            places = ", ".join(str(place / name) for place in searched)
+            raise InputError(
+                f"data set {name}",
+                f"no copy in {places}, and {fetcher.get_url(file)} cannot be reached ({type(error).__name__})",
+                "a copy or a network",
+                f"put the data set's files in {searched[0] / name}",
+            ) from None
+        except ValueError as error:
+            raise InputError(
+                fetcher.get_url(file), " ".join(str(error).split()), "the file with the known sha256", "report this"
+            ) from None

@@ -1,0 +1,15 @@
+"""The noise models by the name that a platform file gives them."""
+
+from typing import Final
+
+from linepose.camera import Camera
+from linepose.likelihood.base import Likelihood
+from linepose.likelihood.published import PublishedLikelihood
+from linepose.observations import Survey
+
+NOISE_MODELS: Final[dict[str, type[PublishedLikelihood]]] = {"published": PublishedLikelihood}
+
+
+def likelihood_of(noise_model: str, survey: Survey, camera: Camera) -> Likelihood:
+    """The likelihood of a survey under a noise model, by name."""
+    return NOISE_MODELS[noise_model](survey, camera)

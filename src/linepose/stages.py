@@ -1,0 +1,121 @@
+"""The estimate at each stage of the outlier removal: optimum, samples, diagnostics, and the table of poses."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from linepose.diagnostics import ChainDiagnostics
+from linepose.likelihood.base import Likelihood
+from linepose.optimise import Search, laplace_covariance, optimise
+from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.result_schemas import LAPLACE_SIGMA_COLUMNS
+from linepose.rotations import Floats
+from linepose.sampling import Chain
+
+
+def optimise_stages(
+    likelihood: Likelihood, stages: Mapping[str, Sequence[int]], start: ArrayLike, search: Search
+) -> pd.DataFrame:
+    """The optimum of each stage from the start pose (6,), with the sigmas of the Laplace approximation.
+
+    Columns as in `result_schemas.OPTIMA`, and the noise model's own parameters. The reduced chi-square is 2 (-log L)
+    over the number of reprojected points less six: near one where the reported sigmas are right.
+    """
+    rows = []
+    for name, numbers in stages.items():
+        selected = likelihood.select(numbers)
+        optimum = optimise(selected, start, search)
+        sigma = np.sqrt(np.diag(laplace_covariance(selected, optimum.parameters)))
+        residuals = selected.residuals(optimum.parameters)
+        normalised = residuals.error_px / residuals.sigma_px
+        freedom = int(np.isfinite(normalised).sum()) - N_PARAMETERS
+        rows.append(
+            {
+                "stage": name,
+                "n_observations": len(numbers),
+                **dict(zip(likelihood.parameter_names, optimum.parameters, strict=True)),
+                **dict(zip(LAPLACE_SIGMA_COLUMNS, sigma[:N_PARAMETERS], strict=True)),
+                "neg_log_likelihood": optimum.neg_log_likelihood,
+                "start_neg_log_likelihood": -selected.log_likelihood(likelihood.start(start)),
+                "reduced_chi_square": float(np.nansum(normalised**2)) / max(freedom, 1),
+                "n_evaluations": optimum.n_evaluations,
+                "degrees_of_freedom": freedom,
+                "converged": optimum.converged,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def sample_table(chain: Chain, names: Sequence[str]) -> pd.DataFrame:
+    """One row a kept sample, ordered by step and walker."""
+    n_steps, n_walkers, _ = chain.parameters.shape
+    step, walker = np.divmod(np.arange(n_steps * n_walkers), n_walkers)
+    columns = {"walker": walker, "step": step, **dict(zip(names, chain.flat().T, strict=True))}
+    return pd.DataFrame({**columns, "log_likelihood": chain.log_likelihood.ravel()})
+
+
+def samples_from_table(table: pd.DataFrame, names: Sequence[str]) -> Floats:
+    """Samples (steps, walkers, P) of a table that `sample_table` made."""
+    ordered = table.sort_values(["step", "walker"])
+    shape = (int(table["step"].max()) + 1, int(table["walker"].max()) + 1, len(names))
+    return ordered[list(names)].to_numpy().reshape(shape)
+
+
+def diagnostics_table(optima: pd.DataFrame, diagnostics: Mapping[str, ChainDiagnostics]) -> pd.DataFrame:
+    """One row a parameter of the pose and stage: is the chain long enough, and do sampled and Laplace sigma agree.
+
+    Columns as in `result_schemas.DIAGNOSTICS`.
+    """
+    rows = []
+    for _, optimum in optima.iterrows():
+        chain = diagnostics[optimum["stage"]]
+        for i, name in enumerate(POSE_COLUMNS):
+            rows.append(
+                {
+                    "stage": optimum["stage"],
+                    "n_observations": optimum["n_observations"],
+                    "parameter": name,
+                    "acceptance_fraction": chain.acceptance_fraction,
+                    "autocorrelation_time": chain.autocorrelation_time[i],
+                    "effective_sample_size": chain.effective_sample_size[i],
+                    "split_r_hat": chain.split_r_hat[i],
+                    "sampled_sigma": chain.sigma[i],
+                    "laplace_sigma": optimum[LAPLACE_SIGMA_COLUMNS[i]],
+                    "neg_log_likelihood": optimum["neg_log_likelihood"],
+                    "reduced_chi_square": optimum["reduced_chi_square"],
+                    "warning": chain.warning,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def pose_table(
+    optima: pd.DataFrame,
+    sampled_sigma: Mapping[str, Floats],
+    start: ArrayLike,
+    start_sigma: ArrayLike,
+) -> pd.DataFrame:
+    """The poses that people ask for: the hand-measured one, then each stage's optimum with its sampled sigma.
+
+    `start` and `start_sigma` (6,) are the hand measurement; its -log L is that of the inliers.
+    Columns as in `result_schemas.POSE`.
+    """
+    inliers = optima.loc[optima["stage"] == "inliers"].iloc[0]
+    hand = {
+        "stage": "hand_measured",
+        "n_observations": inliers["n_observations"],
+        **dict(zip(POSE_COLUMNS, np.asarray(start, dtype=float), strict=True)),
+        **dict(zip(SIGMA_COLUMNS, np.asarray(start_sigma, dtype=float), strict=True)),
+        "neg_log_likelihood": inliers["start_neg_log_likelihood"],
+        "n_evaluations": 1,
+    }
+    rows = [hand]
+    for _, optimum in optima.iterrows():
+        kept = {
+            name: optimum[name]
+            for name in ("stage", "n_observations", *POSE_COLUMNS, "neg_log_likelihood", "n_evaluations")
+        }
+        rows.append(kept | dict(zip(SIGMA_COLUMNS, sampled_sigma[optimum["stage"]], strict=True)))
+    return pd.DataFrame(rows)

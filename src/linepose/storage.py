@@ -1,0 +1,62 @@
+"""Results on disk: Parquet with a fixed schema, whole or not at all, the same bytes for the same values."""
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from linepose.errors import InputError
+
+
+@contextmanager
+def whole_file(path: Path | str) -> Iterator[Path]:
+    """A temporary path beside `path` that takes its place when the block ends well, and vanishes otherwise."""
+    target = Path(path)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        temporary.chmod(0o644)
+        temporary.replace(target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_table(table: pd.DataFrame, path: Path | str, schema: pa.Schema) -> None:
+    """Write a table as Parquet in the schema's columns and order; raises InputError where it does not fit."""
+    try:
+        arrow = pa.Table.from_pandas(table, schema=schema, preserve_index=False)
+    except (KeyError, pa.ArrowException) as error:
+        raise InputError(str(path), str(error).splitlines()[0], f"columns {schema.names}", "mend the result") from None
+    unknown = set(table.columns) - set(schema.names)
+    if unknown:
+        raise InputError(str(path), f"columns {sorted(unknown)}", f"columns {schema.names}", "mend the result")
+    with whole_file(path) as temporary:
+        pq.write_table(arrow.replace_schema_metadata(None), temporary, compression="zstd")
+
+
+def read_table(path: Path | str, schema: pa.Schema | None = None) -> pd.DataFrame:
+    """Read a Parquet table; raises InputError for a file that is missing, is not Parquet, or lacks columns."""
+    if not Path(path).is_file():
+        raise InputError(str(path), "no such file", "a result of an earlier stage", "run that stage first")
+    try:
+        arrow = pq.read_table(path)
+    except pa.ArrowException as error:
+        raise InputError(str(path), str(error).splitlines()[0], "a Parquet file", "delete it and run again") from None
+    missing = [name for name in schema.names if name not in arrow.column_names] if schema else []
+    if missing:
+        raise InputError(str(path), f"no column {', '.join(missing)}", "the stage's schema", "delete it and run again")
+    return arrow.to_pandas()
+
+
+def write_csv(table: pd.DataFrame, path: Path | str) -> None:
+    """Write a table as CSV for people and spreadsheets, ten significant digits."""
+    with whole_file(path) as temporary:
+        table.to_csv(temporary, index=False, float_format="%.10g", lineterminator="\n")

@@ -1,0 +1,23 @@
+rule sample:
+    input:
+        observations="results/{platform}/observations.parquet",
+        outliers="results/{platform}/outliers.parquet",
+        optima="results/{platform}/optima.parquet",
+        compiled="results/compiled.txt",
+    output:
+        directory("results/{platform}/mcmc"),
+    log:
+        "results/logs/{platform}/sample.log",
+    conda:
+        "../../environment.yml"
+    threads: 2
+    params:
+        platform=settings,
+        sampling=section("sampling"),
+        seed=STUDY.seed,
+        code=[
+            source_digest("linepose.stages"),
+            source_digest("linepose.likelihood.models"),
+        ],
+    script:
+        "../../scripts/sample.py"
