@@ -5,7 +5,7 @@ CORES ?= 2
 BIN := .venv/bin
 STAMP := .venv/installed
 
-.PHONY: help reproduce test check bench lock clean
+.PHONY: help reproduce test check bench reference lock clean
 
 help: ## What can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -31,6 +31,9 @@ check: $(STAMP) ## Style, types and the workflow's own lint
 
 bench: $(STAMP) ## Measure speed on this machine
 	$(BIN)/python benchmarks/run.py
+
+reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
+	$(BIN)/python -m linepose.config.reference
 
 lock: ## Take the newest versions that fit pyproject.toml into requirements.lock
 	rm -rf .venv-lock

@@ -27,20 +27,25 @@ def find_dataset(name: str, files: Sequence[str], folders: Sequence[Path]) -> Pa
     return None
 
 
-def check_dataset(folder: Path, sha256: Mapping[str, str]) -> None:
-    """Compare each file with its sum; raises InputError naming the first that is missing or differs."""
+def check_dataset(folder: Path, sha256: Mapping[str, str | None]) -> dict[str, str]:
+    """The sum of each file, by its path in the folder; a sum that is given must be met, None accepts any.
+
+    Raises InputError naming the first file that is missing or differs.
+    """
+    found = {}
     for file, expected in sha256.items():
         path = folder / file
         if not path.is_file():
             raise InputError(str(path), "no such file", "a file of the data set", "restore it")
-        found = hashlib.sha256(path.read_bytes()).hexdigest()
-        if found != expected:
+        found[file] = hashlib.sha256(path.read_bytes()).hexdigest()
+        if expected is not None and found[file] != expected:
             raise InputError(
                 str(path),
-                f"sha256 {found[:12]}... ({path.stat().st_size} bytes)",
+                f"sha256 {found[file][:12]}... ({path.stat().st_size} bytes)",
                 f"sha256 {expected[:12]}...",
                 "the file is altered or truncated: restore it from the source",
             )
+    return found
 
 
 def download_dataset(

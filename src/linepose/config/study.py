@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
-from linepose.config.platform import Platform, load_platform, read_yaml
+from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
 from linepose.optimise import Search
 from linepose.sampling import SamplingSettings
@@ -77,8 +77,3 @@ def load_dataset(path: Path) -> DatasetSection:
 def check_study(values: dict[str, Any], place: str = "config/config.yaml") -> Study:
     """The study that these values describe; raises InputError for the first that is wrong."""
     return validated(Study, values, place)
-
-
-def load_platforms(study: Study, root: Path) -> dict[str, Platform]:
-    """Every platform of the study by name; raises InputError for the first file that is wrong."""
-    return {name: load_platform(root / study.platforms_folder, name) for name in study.platforms}

@@ -61,10 +61,10 @@ def _read_view(path: Path, n_pixels: int) -> pd.DataFrame:
     view = view[labelled].astype({"point": np.int64})
     repeated = np.flatnonzero(view["point"].duplicated())
     if repeated.size:
-        row = int(np.flatnonzero(labelled)[repeated[0]])
+        again = int(np.flatnonzero(labelled)[repeated[0]])
         point = int(view["point"].iloc[repeated[0]])
         raise InputError(
-            f"{path}, row {row + 1}, column 2",
+            f"{path}, row {again + 1}, column 2",
             f"point {point} again",
             "each point once a view",
             "remove one of the rows",

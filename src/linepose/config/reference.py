@@ -1,0 +1,86 @@
+"""The configuration explained: a page for people and JSON schemas for editors, both made from the models.
+
+`python -m linepose.config.reference` writes docs/configuration.md and workflow/schemas/.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
+
+from linepose.config.platform import Platform
+from linepose.config.schema import Section
+from linepose.config.study import DatasetSection, Study
+
+_PARTS: dict[str, tuple[str, type[Section]]] = {
+    "config": ("config/config.yaml", Study),
+    "platform": ("config/platforms/NAME.yaml", Platform),
+    "dataset": ("config/datasets/NAME.yaml", DatasetSection),
+}
+_INTRODUCTION = """# Configuration
+
+Science stands in `config/`, machines in `profiles/`. An unknown key is an error, which names the nearest known one.
+A platform file may say `like: OTHER`: what it leaves out is then taken from `config/platforms/OTHER.yaml`.
+
+This page is made from the code by `make reference`.
+"""
+
+
+def reference_page() -> str:
+    """Every key of every configuration file in Markdown tables: key, default, meaning with its unit."""
+    parts = [_INTRODUCTION]
+    for title, model in _PARTS.values():
+        rows = "\n".join(f"| `{key}` | {default} | {meaning} |" for key, default, meaning in _rows(model, ""))
+        parts.append(f"## {title}\n\n| key | default | meaning |\n| --- | --- | --- |\n{rows}\n")
+    return "\n".join(parts)
+
+
+def json_schemas() -> dict[str, str]:
+    """A JSON schema for each kind of file, by file name; editors complete and check with it."""
+    schemas = {f"{name}.schema.json": model.model_json_schema() for name, (_, model) in _PARTS.items()}
+    schemas["platform.schema.json"]["properties"]["like"] = {
+        "type": "string",
+        "description": "Name of the platform from which everything is taken that this file does not say.",
+    }
+    schemas["platform.schema.json"].pop("required", None)
+    return {name: json.dumps(schema, indent=2) + "\n" for name, schema in schemas.items()}
+
+
+def _rows(model: type[BaseModel], prefix: str) -> list[tuple[str, str, str]]:
+    rows = []
+    for name, field in model.model_fields.items():
+        sections = _sections(field.annotation)
+        rows.append((f"{prefix}{name}", _default(field), (field.description or "").replace("|", "\\|")))
+        for section in sections:
+            rows += _rows(section, f"{prefix}{name}.")
+    return rows
+
+
+def _default(field: FieldInfo) -> str:
+    default: Any = field.get_default(call_default_factory=True, validated_data={})
+    if default is PydanticUndefined:
+        return "required"
+    return "see below" if isinstance(default, BaseModel) else f"`{json.dumps(default, default=str)}`"
+
+
+def _sections(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [section for part in getattr(annotation, "__args__", ()) for section in _sections(part)]
+
+
+def write_reference(root: Path) -> None:
+    """Write the page and the schemas below the repository's root."""
+    (root / "docs").mkdir(exist_ok=True)
+    (root / "docs" / "configuration.md").write_text(reference_page(), encoding="utf-8")
+    folder = root / "workflow" / "schemas"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in json_schemas().items():
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_reference(Path())

@@ -1,0 +1,20 @@
+from pathlib import Path
+
+from linepose.config.reference import json_schemas, reference_page
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_committed_page_is_what_the_code_says():
+    assert (ROOT / "docs" / "configuration.md").read_text() == reference_page()
+
+
+def test_committed_schemas_are_what_the_code_says():
+    for name, text in json_schemas().items():
+        assert (ROOT / "workflow" / "schemas" / name).read_text() == text
+
+
+def test_every_key_is_described():
+    for line in reference_page().splitlines():
+        if line.startswith("| `"):
+            assert len(line.split(" | ")[2].strip(" |")) > 3, line
