@@ -7,10 +7,24 @@ from linepose.errors import InputError
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Optimum, Search, optimise
 from linepose.rotations import Floats
+from linepose.wide_search import search_widely
 
 Optimiser = Callable[[Likelihood, Floats, Search], Optimum]
 
-OPTIMISERS: Final[dict[str, Optimiser]] = {"powell": optimise}
+
+def search_as_published(likelihood: Likelihood, start: Floats, search: Search) -> Optimum:
+    """Powell's method on the paper's equations, in which points behind the camera count as if in front.
+
+    This reproduces the basin of section 4.7; to exclude such poses, as `optimise` does, widens it.
+    """
+    return optimise(likelihood.mirrored(), start, search)
+
+
+OPTIMISERS: Final[dict[str, Optimiser]] = {
+    "powell": search_as_published,
+    "powell_in_front": optimise,
+    "wide": search_widely,
+}
 
 
 def optimiser(name: str) -> Optimiser:

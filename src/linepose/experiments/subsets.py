@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import pandas as pd
@@ -10,12 +11,13 @@ from numpy.typing import ArrayLike
 from linepose.errors import InputError
 from linepose.experiments.estimate import estimate_by_sampling, observation_list
 from linepose.likelihood.base import Likelihood
-from linepose.observations import EULER_COLUMNS, MINIMUM_OBSERVATIONS, Survey
+from linepose.observations import EULER_COLUMNS, Survey
 from linepose.optimise import Search
 from linepose.rotations import Floats
 from linepose.sampling import SamplingSettings
 
-BODY_ANGLES = tuple(name.removesuffix("_rad") for name in EULER_COLUMNS)
+_RAYS_PER_POINT: Final = 2
+BODY_ANGLES: Final = tuple(name.removesuffix("_rad") for name in EULER_COLUMNS)
 
 
 @dataclass(frozen=True)
@@ -75,8 +77,8 @@ def check_subset(numbers: Sequence[int], accepted: ArrayLike, known: ArrayLike, 
     repeated = sorted({number for number in numbers if list(numbers).count(number) > 1})
     if repeated:
         raise InputError(place, f"observation {observation_list(repeated)} twice", "each one once", "remove one")
-    if len(numbers) < MINIMUM_OBSERVATIONS:
-        raise InputError(place, f"{len(numbers)} observations", f"at least {MINIMUM_OBSERVATIONS}", "name more")
+    if len(numbers) < _RAYS_PER_POINT:
+        raise InputError(place, f"{len(numbers)} observations", f"at least {_RAYS_PER_POINT}", "name more")
 
 
 def subset_estimates(

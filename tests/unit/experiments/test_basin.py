@@ -125,8 +125,3 @@ def test_wilson_interval_is_the_closed_form():
     centre = (k + z**2 / 2) / (n + z**2)
     half = z / (n + z**2) * np.sqrt(k * (n - k) / n + z**2 / 4)
     assert wilson_interval(k, n) == pytest.approx((centre - half, centre + half), rel=1e-9)
-
-
-def test_unknown_optimiser_is_named():
-    with pytest.raises(InputError, match="'powel'"):
-        optimiser("powel")
