@@ -76,7 +76,8 @@ def laplace_covariance(likelihood: Likelihood, optimum: ArrayLike) -> Floats:
 
     Central differences, first with a fixed step, then with a hundredth of the sigma that this gave: there the
     truncation error is 1e-4 of the fourth derivative's share and the rounding error 1e-10.
-    Raises EstimationError where the curvature is not positive definite: a parameter that the data leave open.
+    Raises EstimationError where the likelihood is undefined, or the curvature is not positive definite: a parameter
+    that the data leave open.
     """
     parameters = np.asarray(optimum, dtype=float)
     step = np.full(len(parameters), 1e-4)
@@ -106,6 +107,11 @@ def _hessian(likelihood: Likelihood, centre: Floats, step: Floats) -> Floats:
             points[4 * k + m, i] += a * step[i]
             points[4 * k + m, j] += b * step[j]
     values = -likelihood.log_likelihoods(points)
+    if not np.all(np.isfinite(values)):
+        raise EstimationError(
+            "Laplace covariance: the likelihood is undefined at the optimum or beside it, where a point lies behind "
+            "the camera; check the hand-measured pose and the observations"
+        )
     quads = values[:-1].reshape(-1, 4)
     hessian = np.empty((n, n))
     for (i, j), (pp, pm, mp, mm) in zip(pairs, quads, strict=True):
