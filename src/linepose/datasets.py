@@ -11,10 +11,13 @@ from linepose.errors import InputError
 
 
 def find_dataset(name: str, files: Sequence[str], folders: Sequence[Path]) -> Path | None:
-    """The first folder that has this data set, or None; raises InputError where one has only a part of it."""
+    """The first folder that has this data set, or None; raises InputError where one has only a part of it.
+
+    A folder without any of the files, which a failed download leaves, is passed over.
+    """
     for folder in folders:
         candidate = folder / name
-        if candidate.is_dir():
+        if any((candidate / file).is_file() for file in files):
             for file in files:
                 if not (candidate / file).is_file():
                     raise InputError(
