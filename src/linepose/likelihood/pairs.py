@@ -18,7 +18,7 @@ PARALLEL_SINE_SQUARED = 1e-16
 def intersect(rays: Floats, rays_again: Floats, sums: Floats, sums_again: Floats) -> None:
     """Write what all pairs say of the point, into `sums` (N, SUM_COLUMNS), from `rays` (N, RAY_COLUMNS).
 
-    Give either array twice: a loop that names rows i and j of one array needs more alias checks than LLVM allows itself,
+    Give either array twice: a loop that names rows i and j of one array needs more alias checks than LLVM makes,
     and stays scalar. Suffix 1 is the ray i, 2 the ray j; n is d_i x d_j up to sign, in the axes across each ray.
     """
     for i in range(rays.shape[0]):
