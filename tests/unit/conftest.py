@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from linepose.camera import Camera
 from linepose.config.platform import Platform, load_platform
+from linepose.config.study import DatasetSection, load_dataset
 from linepose.likelihood.base import Likelihood, Residuals
 from linepose.observations import Survey
 
@@ -160,3 +161,15 @@ def published() -> dict[str, Any]:
 def ladybird() -> Platform:
     """config/platforms/ladybird.yaml."""
     return load_platform(CONFIG / "platforms", "ladybird")
+
+
+@pytest.fixture(scope="session")
+def ladybird_dataset() -> DatasetSection:
+    """config/datasets/ladybird.yaml."""
+    return load_dataset(CONFIG / "datasets" / "ladybird.yaml")
+
+
+@pytest.fixture(scope="session")
+def platforms_folder() -> Path:
+    """config/platforms."""
+    return CONFIG / "platforms"
