@@ -11,18 +11,21 @@ from linepose.errors import InputError
 
 
 def find_dataset(name: str, files: Sequence[str], folders: Sequence[Path]) -> Path | None:
-    """The first folder that has this data set, or None; raises InputError where one has only a part of it."""
+    """The first folder that has this data set, or None; raises InputError where one has only a part of it.
+
+    A folder without any of the files, which a failed download leaves, is passed over; with no files known, any will do.
+    """
     for folder in folders:
         candidate = folder / name
-        if candidate.is_dir():
-            for file in files:
-                if not (candidate / file).is_file():
-                    raise InputError(
-                        str(candidate / file),
-                        "no such file",
-                        f"all {len(files)} files of the data set {name}",
-                        f"complete the folder, or remove {candidate} to have it downloaded",
-                    )
+        missing = [file for file in files if not (candidate / file).is_file()]
+        if candidate.is_dir() and (not files or len(missing) < len(files)):
+            if missing:
+                raise InputError(
+                    str(candidate / missing[0]),
+                    "no such file",
+                    f"all {len(files)} files of the data set {name}",
+                    f"complete the folder, or remove {candidate} to have it downloaded",
+                )
             return candidate
     return None
 

@@ -78,13 +78,14 @@ def laplace_covariance(likelihood: Likelihood, optimum: ArrayLike) -> Floats:
     along the principal axes that this gave with a hundredth of each axis's sigma. There the rounding error is 1e-9 and
     the truncation error 1e-4 of the fourth derivative's share; along the parameters themselves such a step would leave
     the minimum's neighbourhood, because they are strongly correlated.
-    Raises EstimationError where the curvature is not positive definite: a direction that the data leave open.
+    Raises EstimationError where the likelihood is undefined, or the curvature is not positive definite: a direction
+    that the data leave open.
     """
     parameters = np.asarray(optimum, dtype=float)
     axes = 1e-6 * np.eye(len(parameters))
-    for scale in (1e-2, 1.0):
+    for scale, lowest in ((1e-2, 0.0), (1.0, 0.1 * 1e-2**2)):  # the second time each curvature is about 1e-2 squared
         curvature, directions = np.linalg.eigh(_hessian(likelihood, parameters, axes))
-        if not np.all(np.isfinite(curvature)) or curvature[0] <= 0:
+        if curvature[0] <= lowest:
             raise EstimationError(
                 "Laplace covariance: the curvature of the likelihood at the optimum is not positive definite; "
                 "the observations leave a direction of the pose open: add views from other sides or with other tilts"
@@ -98,7 +99,13 @@ def _hessian(likelihood: Likelihood, centre: Floats, axes: Floats) -> Floats:
     n = len(centre)
     pairs = [(i, j) for i in range(n) for j in range(i, n)]
     offsets = [a * axes[:, i] + b * axes[:, j] for i, j in pairs for a in _STEPS for b in _STEPS]
-    quads = -likelihood.log_likelihoods(centre + np.array(offsets)).reshape(-1, 4)
+    values = -likelihood.log_likelihoods(centre + np.array(offsets))
+    if not np.all(np.isfinite(values)):
+        raise EstimationError(
+            "Laplace covariance: the likelihood is undefined at the optimum or beside it, where a point lies behind "
+            "the camera; check the hand-measured pose and the observations"
+        )
+    quads = values.reshape(-1, 4)
     hessian = np.empty((n, n))
     for (i, j), (pp, pm, mp, mm) in zip(pairs, quads, strict=True):
         hessian[i, j] = hessian[j, i] = (pp - pm - mp + mm) / 4

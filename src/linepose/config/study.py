@@ -61,7 +61,9 @@ class Study(Section):
     platforms: list[str] = Field(min_length=1, description="Platforms to run: files of config/platforms.")
     platforms_folder: str = Field("config/platforms", description="Folder of the platform files.")
     published: str = Field("config/published.yaml", description="File of the numbers to regress on.")
-    data_folders: list[str] = Field(["data", "../shared"], description="Folders searched for data sets, in this order.")
+    data_folders: list[str] = Field(
+        ["data", "../shared"], min_length=1, description="Folders searched for data sets, in this order."
+    )
     datasets: dict[str, str] = Field(default_factory=dict, description="Data sets, name to file of their sums.")
     seed: NonNegativeInt = Field(2017, description="Seed from which every random number is derived.")
     search: SearchSection = Field(SearchSection(), description="Optimisation.")

@@ -58,7 +58,7 @@ def _evaluate(
         rows = survey[block]
         cast(rows, pose, axes, rays)
         spread(rows, pose, axes, rays)
-        intersect(rays, sums)
+        intersect(rays, rays, sums, sums)
         gather(rays, sums, points)
         solve(points)
         reproject(rows, pose, axes, rays, points, residuals, scores)
