@@ -1,7 +1,6 @@
 """Estimate the pose without each observation in turn."""
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform

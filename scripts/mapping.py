@@ -2,7 +2,6 @@
 
 import numpy as np
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.experiments import MappingSection

@@ -1,10 +1,9 @@
 """Compare the poses of two disjoint subsets."""
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
-    from linepose.config.experiments import ExperimentsSection
+    from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
     from linepose.config.study import SamplingSection, SearchSection
     from linepose.experiment_schemas import REPEATABILITY
@@ -13,11 +12,11 @@ with stage(snakemake) as log:
     from linepose.storage import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
-    experiments = ExperimentsSection.model_validate(snakemake.params.experiments)
+    settings = RepeatabilitySection.model_validate(snakemake.params.repeatability)
     search = SearchSection.model_validate(snakemake.params.search).settings()
     sampling = SamplingSection.model_validate(snakemake.params.sampling).settings()
     data = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers)
-    pair = {"subset_1": experiments.repeatability.first, "subset_2": experiments.repeatability.second}
+    pair = {"subset_1": settings.first, "subset_2": settings.second}
     place = f"{snakemake.params.file}: experiments.repeatability"
     subsets = data.subsets(pair, place)
     seed = snakemake.params.seed

@@ -1,7 +1,6 @@
 """Estimate the pose under other choices of camera, residual and data."""
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform

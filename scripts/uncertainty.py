@@ -1,7 +1,6 @@
 """Put sampled and Laplace sigmas of each outlier stage side by side."""
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake):
     from linepose.experiment_schemas import UNCERTAINTY
