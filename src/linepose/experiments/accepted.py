@@ -67,4 +67,4 @@ def read_reference(likelihood: Likelihood, optima: Path | str, samples: Path | s
     names = list(likelihood.parameter_names)
     optimum = read_table(optima, OPTIMA).set_index("stage").loc["inliers", names]
     chain = samples_from_table(read_table(Path(samples) / "inliers.parquet", SAMPLES), names[:N_PARAMETERS])
-    return Reference(optimum.to_numpy(dtype=float), np.cov(chain.reshape(-1, N_PARAMETERS).T))
+    return Reference(optimum.to_numpy(dtype=float, copy=True), np.cov(chain.reshape(-1, N_PARAMETERS).T))
