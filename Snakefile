@@ -32,6 +32,7 @@ include: "workflow/rules/mapping.smk"
 include: "workflow/rules/sensitivity.smk"
 include: "workflow/rules/experiments.smk"
 include: "workflow/rules/regression.smk"
+include: "workflow/rules/published_tables.smk"
 
 
 rule all:
@@ -40,5 +41,6 @@ rule all:
         expand("results/{platform}/pose.parquet", platform=PLATFORMS),
         expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
         rules.experiments.input,
+        rules.published_tables.output if COMPARED else [],
         "results/regression.parquet",
         "results/logs/regression.passed",
