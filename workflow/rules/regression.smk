@@ -4,10 +4,29 @@ REGRESSED = {
     if PROJECT.platforms[key].published
 }
 
+# Platforms with all experiments that the paper has numbers of.
+COMPARED = [
+    key
+    for key, published in REGRESSED.items()
+    if published == "ladybird"
+    and {"high", "low"} <= set(PROJECT.platforms[key].experiments.subsets)
+    and PROJECT.platforms[key].experiments.repeatability
+    and PROJECT.platforms[key].experiments.repeatability.first
+]
+SWEPT = [
+    key
+    for key in COMPARED
+    if PROJECT.platforms[key].experiments.basin
+    and "powell" in PROJECT.platforms[key].experiments.basin.optimisers
+]
+
 
 rule regression:
     input:
         published=STUDY.published,
+        subsets=expand("results/{platform}/subsets.parquet", platform=COMPARED),
+        pairs=expand("results/{platform}/repeatability.parquet", platform=COMPARED),
+        basin=expand("results/{platform}/basin_summary.parquet", platform=SWEPT),
         pose=expand("results/{platform}/pose.parquet", platform=REGRESSED),
         outliers=expand("results/{platform}/outliers.parquet", platform=REGRESSED),
         sigma=expand("results/{platform}/navigation_sigma.parquet", platform=REGRESSED),
@@ -20,7 +39,9 @@ rule regression:
         "../../environment.yml"
     params:
         published_as=REGRESSED,
-        code=source_digest("linepose.tables.regression"),
+        compared=COMPARED,
+        swept=SWEPT,
+        code=source_digest("linepose.tables.experiments_regression"),
     script:
         "../../scripts/regression.py"
 

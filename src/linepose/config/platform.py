@@ -8,6 +8,7 @@ import yaml
 from pydantic import Field, PositiveFloat, PositiveInt, field_validator
 
 from linepose.camera import Camera, CameraSigmas
+from linepose.config.experiments import ExperimentsSection
 from linepose.config.schema import Section, validated
 from linepose.errors import InputError
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
@@ -90,6 +91,10 @@ class Platform(Section):
     noise_model: Literal["published"] = Field("published", description="The likelihood's model of the noise.")
     published: Literal["ladybird", "ladybird_attitude"] | None = Field(
         None, description="The published numbers that the results are held against, if any."
+    )
+
+    experiments: ExperimentsSection = Field(
+        ExperimentsSection(), description="Experiments on the accepted observations."
     )
 
     def intrinsics(self) -> Camera:
