@@ -133,7 +133,8 @@ class ImageSettings:
 
     `ifov_rad` is the field of view of one pixel, both ways; it may exceed the pixels' spacing. Reflectances are
     between 0 and 1, the full scale is what reflectance 1 gives in light of strength 1. The lighting gradient is the
-    relative change of the light per metre along the board's x and y.
+    relative change of the light per metre along the board's x and y. Exposure is a share of the line's period, margin
+    one of the time from first to last point, rendered on both sides of them.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _CLOSED
@@ -142,7 +143,8 @@ class ImageSettings:
     n_bands: int = 4
     n_bits: int = 12
     supersampling: int = 4
-    margin_m: float = 0.15
+    exposure_share: float = 0.8
+    margin_share: float = 0.6
     full_scale_electrons: float = 20000.0
     read_noise_electrons: float = 40.0
     dark_reflectance: float = 0.05
