@@ -1,0 +1,93 @@
+"""The compiled likelihood: Eq. 11-22 for one pose, and for many poses on all cores."""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import config as numba_config
+from numba import get_thread_id, njit, prange  # type: ignore[attr-defined]
+
+from linepose.likelihood import layout as at
+from linepose.likelihood.compiling import FAST_ARITHMETIC, part
+from linepose.likelihood.estimate import gather, solve
+from linepose.likelihood.layout import LANES
+from linepose.likelihood.pairs import intersect
+from linepose.likelihood.rays import camera_axes, cast, spread
+from linepose.likelihood.reprojection import reproject
+from linepose.rotations import Floats
+
+MAXIMUM_THREADS: int = numba_config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+_SOURCES = ("compiling", "estimate", "kernel", "layout", "pairs", "rays", "reprojection")
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Scratch arrays for `count` evaluations at a time, N observations.
+
+    rays (count, N, RAY_COLUMNS), sums (count, N, SUM_COLUMNS), points (count, POINT_COLUMNS), residuals
+    (count, N, RESIDUAL_COLUMNS); the last two hold the results of the block that was evaluated last.
+    """
+
+    rays: Floats
+    sums: Floats
+    points: Floats
+    residuals: Floats
+
+
+def workspace(n_observations: int, count: int) -> Workspace:
+    """Scratch arrays for `count` evaluations at a time."""
+    return Workspace(
+        rays=np.zeros((count, n_observations, at.RAY_COLUMNS)),
+        sums=np.zeros((count, n_observations, at.SUM_COLUMNS)),
+        points=np.zeros((count, at.POINT_COLUMNS)),
+        residuals=np.zeros((count, n_observations, at.RESIDUAL_COLUMNS)),
+    )
+
+
+@part
+def _evaluate(survey: Floats, pose: Floats, rays: Floats, sums: Floats, points: Floats, residuals: Floats) -> float:
+    axes = np.empty((3, 3))
+    scores = np.zeros(2 * LANES)
+    camera_axes(pose, axes)
+    for block in range(survey.shape[0]):
+        rows = survey[block]
+        cast(rows, pose, axes, rays)
+        spread(rows, pose, axes, rays)
+        intersect(rays, sums)
+        gather(rays, sums, points)
+        solve(points)
+        reproject(rows, pose, axes, rays, points, residuals, scores)
+    total, behind = 0.0, 0.0
+    for lane in range(LANES):
+        total += scores[lane]
+        behind += scores[LANES + lane]
+    return -0.5 * total if behind == 0.0 and total < np.inf else -np.inf
+
+
+def _digest() -> str:
+    folder = Path(__file__).parent
+    return hashlib.sha256(b"".join((folder / f"{name}.py").read_bytes() for name in _SOURCES)).hexdigest()
+
+
+def _compiled(sources: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """The two entry points. `sources` becomes part of the key of the cache on disk, which else knows this file only."""
+
+    @njit(cache=True, error_model="numpy", fastmath=FAST_ARITHMETIC)
+    def evaluate(survey, pose, rays, sums, points, residuals):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+        _ = sources
+        return _evaluate(survey, pose, rays[0], sums[0], points[0], residuals[0])
+
+    @njit(cache=True, parallel=True, error_model="numpy", fastmath=FAST_ARITHMETIC)
+    def evaluate_rows(survey, poses, rays, sums, points, residuals, out):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+        _ = sources
+        for row in prange(poses.shape[0]):
+            own = get_thread_id()
+            out[row] = _evaluate(survey, poses[row], rays[own], sums[own], points[own], residuals[own])
+
+    return evaluate, evaluate_rows
+
+
+evaluate, evaluate_rows = _compiled(_digest())

@@ -1,0 +1,121 @@
+"""What the kernel needs of a survey and a camera, worked out once: covariances in body axes, rays in the camera."""
+
+import logging
+
+import numpy as np
+
+from linepose import rotations
+from linepose.camera import Camera
+from linepose.errors import InputError
+from linepose.likelihood import layout
+from linepose.likelihood.layout import LANES
+from linepose.observations import Survey
+from linepose.rotations import Floats
+
+_logger = logging.getLogger(__name__)
+_PAIRS_6 = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+_PAIRS_9 = tuple((i, j) for i in range(3) for j in range(3))
+
+
+def usable(survey: Survey) -> Floats:
+    """1 where a point was observed, and by at least one other observation too, else 0; (N, M).
+
+    A point seen once is logged; raises InputError where the body pose or covariance of an observed point is missing.
+    """
+    seen = np.isfinite(survey.u_px)
+    complete = (
+        np.isfinite(survey.position_m).all(axis=-1)
+        & np.isfinite(survey.euler_rad).all(axis=-1)
+        & np.isfinite(survey.covariance).all(axis=(-2, -1))
+    )
+    if np.any(seen & ~complete):
+        row, point = np.argwhere(seen & ~complete)[0]
+        raise InputError(
+            f"observation {survey.number[row]}, point {point}",
+            "a pixel without a finite body pose and covariance",
+            "all of them",
+            "associate it with navigation or remove it",
+        )
+    views = seen.sum(axis=0)
+    alone = np.flatnonzero(views < 2)
+    if len(alone):
+        _logger.warning("points %s have fewer than two views and do not enter", ", ".join(map(str, alone)))
+    return np.where(seen & (views >= 2), 1.0, 0.0)
+
+
+def body_covariance(euler_rad: Floats, covariance: Floats) -> Floats:
+    """Covariance of the body's position and small rotation, both in body axes; (..., 3), (..., 6, 6) to (..., 6, 6)."""
+    to_body = np.swapaxes(rotations.matrix_from_euler(euler_rad), -1, -2)
+    jacobian = np.zeros_like(covariance)
+    jacobian[..., :3, :3] = to_body
+    jacobian[..., 3:, 3:] = to_body @ rotations.small_rotation_by_euler(euler_rad)
+    return jacobian @ covariance @ np.swapaxes(jacobian, -1, -2)
+
+
+def normalised_by_intrinsics(camera: Camera, u_px: Floats) -> tuple[Floats, Floats, Floats]:
+    """Normalised x of pixels, its derivative by u (1/px), and by u0, f, k1, k2; (...) to (...), (...), (..., 4)."""
+    k1, k2 = camera.k1, camera.k2
+    distorted = (u_px - camera.principal_point_px) / camera.focal_length_px
+    r = distorted * (1 - k1 * distorted**2 - k2 * distorted**4)
+    squared = r**2
+    quotient = 1 + k1 * squared + k2 * squared**2
+    quotient_by_r = (k1 + 2 * k2 * squared) * 2 * r
+    by_quotient = -distorted / quotient**2
+    r_by_distorted = 1 - 3 * k1 * distorted**2 - 5 * k2 * distorted**4
+    by_distorted = 1 / quotient + by_quotient * quotient_by_r * r_by_distorted
+    by_u = by_distorted / camera.focal_length_px
+    by_k1 = by_quotient * (squared - quotient_by_r * distorted**3)
+    by_k2 = by_quotient * (squared**2 - quotient_by_r * distorted**5)
+    by_intrinsics = np.stack([-by_u, -by_distorted * distorted / camera.focal_length_m, by_k1, by_k2], axis=-1)
+    return distorted / quotient, by_u, by_intrinsics
+
+
+def point_origins(survey: Survey, mask: Floats) -> Floats:
+    """Mean body position over each point's observations, so that coordinates stay small; (M, 3)."""
+    count = np.maximum(mask.sum(axis=0), 1)
+    return np.asarray(np.where(mask[..., None] > 0, survey.position_m, 0).sum(axis=0) / count[:, None])
+
+
+def survey_rows(survey: Survey, camera: Camera, mask: Floats, origins: Floats) -> Floats:
+    """The survey in the kernel's layout, (blocks, N, SURVEY_COLUMNS); unseen points have mask 0 and finite values."""
+    seen = mask > 0
+    u_px = np.where(seen, survey.u_px, camera.principal_point_px)
+    euler = np.where(seen[..., None], survey.euler_rad, 0.0)
+    covariance = np.where(seen[..., None, None], survey.covariance, np.eye(6))
+    matrices, cov = rotations.matrix_from_euler(euler), body_covariance(euler, covariance)
+    position = np.where(seen[..., None], survey.position_m - origins, 0.0)
+    sigmas = camera.sigmas
+    x, by_u, by_intrinsics = normalised_by_intrinsics(camera, u_px)
+    cosine2 = 1 / (1 + x**2)
+    share = by_intrinsics * [sigmas.principal_point_px, sigmas.focal_length_m, sigmas.k1, sigmas.k2]
+    plane_x = (by_u * sigmas.u_px) ** 2 + np.sum(share**2, axis=-1)
+    plane_y = np.full_like(x, (sigmas.v_px / camera.focal_length_px) ** 2)
+    columns = [matrices[..., i, j] for i, j in _PAIRS_9]
+    columns += [position[..., i] for i in range(3)]
+    columns += [cov[..., i, j] for i, j in _PAIRS_6]
+    columns += [cov[..., i, 3 + j] for i, j in _PAIRS_9]
+    columns += [cov[..., 3 + i, 3 + j] for i, j in _PAIRS_6]
+    columns += [x * np.sqrt(cosine2), np.sqrt(cosine2), plane_x * cosine2**2, plane_y * cosine2]
+    columns += [share[..., i] * cosine2 for i in range(4)]
+    columns += [plane_x, plane_y, mask]
+    return _in_lanes(np.stack(columns, axis=1), _absent_column())
+
+
+def _absent_column() -> Floats:
+    """Values (quantities,) of a lane without a point: a level camera at the origin, with unit covariance."""
+    values = np.zeros(layout.SURVEY_COLUMNS // LANES)
+    ones = [layout.R_NX, layout.R_EY, layout.R_DZ, layout.S_XX, layout.S_YY, layout.S_ZZ]
+    ones += [layout.S_AA, layout.S_BB, layout.S_CC, layout.COSINE, layout.SPREAD_ALONG, layout.SPREAD_ACROSS]
+    values[np.array(ones) // LANES] = 1
+    return values
+
+
+def _in_lanes(quantities: Floats, absent: Floats) -> Floats:
+    """(N, quantities, M) to (blocks, N, quantities * LANES), padded with `absent` (quantities,)."""
+    n, count, m = quantities.shape
+    blocks = max(1, -(-m // LANES))
+    padded = np.broadcast_to(absent[:, None], (n, count, blocks * LANES)).copy()
+    padded[..., :m] = quantities
+    return np.ascontiguousarray(
+        padded.reshape(n, count, blocks, LANES).transpose(2, 0, 1, 3).reshape(blocks, n, count * LANES)
+    )
