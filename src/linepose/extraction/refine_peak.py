@@ -10,7 +10,7 @@ from linepose.extraction.scans import Intensity
 
 _PATCH: Final = 10
 _ENLARGED: Final = 100
-_LOWEST_PEAK: Final = 0.8  # of the patch's range: lesser peaks are noise of the dark ground
+_LOWEST_PEAK: Final = 0.1  # of the range of the patch: lesser peaks are noise of the dark print
 
 
 def peak(intensity: Intensity, u_px: float, line: float) -> tuple[float, float] | None:
