@@ -1,10 +1,11 @@
 """Scan images by ray casting: the light that every pixel of every line collects from the board and the ground.
 
 A pixel sees a square field of view, which the slit and the optics make wider than the pixels' spacing, while the body
-moves on during the exposure. All of it is sampled on a regular grid of directions and moments and averaged.
+moves on during the exposure. All of it is sampled on a regular grid of directions, at a few moments, and averaged.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numba
 import numpy as np
@@ -18,6 +19,8 @@ from linepose.simulate.faults import missing
 from linepose.simulate.projection import exact_projections
 from linepose.simulate.settings import ImageSettings, SimulationSettings
 from linepose.simulate.trajectory import body_poses, schedule
+
+_MOMENTS: Final = 2  # in an exposure, during which the body moves by a fraction of what a pixel sees
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ def render(camera: Camera, settings: SimulationSettings, observation: int) -> Ex
     """The scan of one observation without noise, from its number counted from 1."""
     image = settings.image
     middles = line_times_s(camera, settings, observation)
-    moments = _cell_centres(image.supersampling) * image.exposure_share / image.line_rate_hz
+    moments = _cell_centres(_MOMENTS) * image.exposure_share / image.line_rate_hz
     centres, matrices = _camera_in_board(settings, middles[:, None] + moments)
     light = _collected_light(
         centres,
