@@ -14,6 +14,7 @@ container: None
 include: "workflow/rules/common.smk"
 include: "workflow/rules/fetch.smk"
 include: "workflow/rules/compile.smk"
+include: "workflow/rules/check_data.smk"
 include: "workflow/rules/extract.smk"
 include: "workflow/rules/associate.smk"
 include: "workflow/rules/reject_outliers.smk"

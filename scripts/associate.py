@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
@@ -13,9 +12,11 @@ with stage(snakemake) as log:
     from linepose.result_schemas import NAVIGATION_SIGMA, OBSERVATIONS, POINTS
     from linepose.storage import read_table, write_table
 
-    navigation = Platform.model_validate(snakemake.params.platform).navigation
-    covariances = read_covariances(Path(snakemake.input.covariances), navigation.covariance_columns)
-    points = read_table(snakemake.input.points, POINTS)
+    platform = Platform.model_validate(snakemake.params.platform)
+    navigation = platform.navigation
+    path = Path(snakemake.params.folder) / platform.source.covariances
+    covariances = read_covariances(path, navigation.covariance_columns)
+    points = read_table(snakemake.input[0], POINTS)
     observations = associate_covariances(points, covariances, navigation.maximum_gap_s)
     check_determined(survey_from_table(observations), N_PARAMETERS)
     write_table(observations, snakemake.output.observations, OBSERVATIONS)

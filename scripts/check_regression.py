@@ -1,7 +1,6 @@
 """Fail where a published number is not reproduced and not known to deviate."""
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.result_schemas import REGRESSION

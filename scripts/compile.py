@@ -1,7 +1,6 @@
 """Compile the kernels once, so that no other rule pays for it."""
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.likelihood.warm_up import warm_up

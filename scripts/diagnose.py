@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform

@@ -3,19 +3,15 @@
 from pathlib import Path
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.study import load_dataset
-    from linepose.datasets import check_dataset
     from linepose.extraction.labelled_views import read_labelled_views, select_views
     from linepose.result_schemas import POINTS
     from linepose.storage import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     folder = Path(snakemake.params.folder)
-    check_dataset(folder, load_dataset(Path(snakemake.input.sums)).sha256)
     source = platform.source
     views = select_views(folder, source.views, source.first, source.step)
     points = read_labelled_views(views, platform.camera.n_pixels)

@@ -1,7 +1,6 @@
 """Find the most likely pose at each stage of the outlier removal."""
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform

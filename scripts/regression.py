@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml

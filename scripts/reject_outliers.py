@@ -1,7 +1,6 @@
 """Remove the worst observation again and again, and note which stage is accepted."""
 
 from adapter import stage
-from snakemake.script import snakemake
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform

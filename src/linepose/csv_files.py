@@ -15,18 +15,21 @@ def read_numbers(path: Path, n_columns: int, what: str) -> tuple[np.ndarray[tupl
     """
     if not path.is_file():
         raise InputError(str(path), "no such file", what, "restore it, or correct the platform file")
-    rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
-    if not rows:
+    try:
+        lines = path.read_text(encoding="utf-8").rstrip().splitlines()
+    except UnicodeDecodeError:
+        raise InputError(str(path), "bytes that are not UTF-8", what, "save the file as UTF-8 text") from None
+    if not lines:
         raise InputError(str(path), "an empty file", what, "restore it, or leave it out")
-    first = np.empty(len(rows), dtype=np.int64)
-    others = np.empty((len(rows), n_columns - 1))
-    for index, cells in enumerate(rows):
+    first = np.empty(len(lines), dtype=np.int64)
+    others = np.empty((len(lines), n_columns - 1))
+    for index, cells in enumerate(line.split(",") for line in lines):
         place = f"{path}, row {index + 1}"
         if len(cells) != n_columns:
             raise InputError(place, f"{len(cells)} columns", f"{n_columns} columns ({what})", "mend the row")
         try:
             first[index] = int(cells[0])
-        except ValueError:
+        except (ValueError, OverflowError):
             remedy = "write the time as a whole number of microseconds"
             raise InputError(f"{place}, column 1", repr(cells[0]), "a whole number", remedy) from None
         for column, cell in enumerate(cells[1:], start=2):

@@ -11,36 +11,44 @@ from linepose.errors import InputError
 
 
 def find_dataset(name: str, files: Sequence[str], folders: Sequence[Path]) -> Path | None:
-    """The first folder that has this data set, or None; raises InputError where one has only a part of it."""
+    """The first folder that has this data set, or None; raises InputError where one has only a part of it.
+
+    A folder without any of the files, which a failed download leaves, is passed over; with no files known, any will do.
+    """
     for folder in folders:
         candidate = folder / name
-        if candidate.is_dir():
-            for file in files:
-                if not (candidate / file).is_file():
-                    raise InputError(
-                        str(candidate / file),
-                        "no such file",
-                        f"all {len(files)} files of the data set {name}",
-                        f"complete the folder, or remove {candidate} to have it downloaded",
-                    )
+        missing = [file for file in files if not (candidate / file).is_file()]
+        if candidate.is_dir() and (not files or len(missing) < len(files)):
+            if missing:
+                raise InputError(
+                    str(candidate / missing[0]),
+                    "no such file",
+                    f"all {len(files)} files of the data set {name}",
+                    f"complete the folder, or remove {candidate} to have it downloaded",
+                )
             return candidate
     return None
 
 
-def check_dataset(folder: Path, sha256: Mapping[str, str]) -> None:
-    """Compare each file with its sum; raises InputError naming the first that is missing or differs."""
+def check_dataset(folder: Path, sha256: Mapping[str, str | None]) -> dict[str, str]:
+    """The sum of each file, by its path in the folder; a sum that is given must be met, None accepts any.
+
+    Raises InputError naming the first file that is missing or differs.
+    """
+    found = {}
     for file, expected in sha256.items():
         path = folder / file
         if not path.is_file():
             raise InputError(str(path), "no such file", "a file of the data set", "restore it")
-        found = hashlib.sha256(path.read_bytes()).hexdigest()
-        if found != expected:
+        found[file] = hashlib.sha256(path.read_bytes()).hexdigest()
+        if expected is not None and found[file] != expected:
             raise InputError(
                 str(path),
-                f"sha256 {found[:12]}... ({path.stat().st_size} bytes)",
+                f"sha256 {found[file][:12]}... ({path.stat().st_size} bytes)",
                 f"sha256 {expected[:12]}...",
                 "the file is altered or truncated: restore it from the source",
             )
+    return found
 
 
 def download_dataset(

@@ -27,21 +27,35 @@ class ChainDiagnostics:
 def split_r_hat(samples: Floats) -> Floats:
     """Potential scale reduction of each parameter, every walker's chain split in two; (S, W, P) to (P,).
 
+    Infinite where no walker moved.
+
     Gelman et al., Bayesian Data Analysis, 3rd edition, section 11.4.
     """
     half = samples.shape[0] // 2
     chains = np.concatenate([samples[:half], samples[half : 2 * half]], axis=1)
     within = chains.var(axis=0, ddof=1).mean(axis=0)
     between = half * chains.mean(axis=0).var(axis=0, ddof=1)
-    return np.sqrt(((half - 1) / half * within + between / half) / within)
+    ratio = np.divide(between / half, within, out=np.full_like(within, np.inf), where=within > 0)
+    return np.sqrt((half - 1) / half + ratio)
 
 
 def diagnose_samples(samples: Floats) -> ChainDiagnostics:
-    """Diagnostics of samples (S, W, P), with a warning that says what to do, empty where there is nothing to say."""
+    """Diagnostics of samples (S, W, P), with a warning that says what to do, empty where there is nothing to say.
+
+    A walker that never moved has no autocorrelation: it counts as no sample, and the warning says so.
+    """
     n_steps, n_walkers, n_parameters = samples.shape
-    time = np.maximum(emcee.autocorr.integrated_time(samples, tol=0, quiet=True), 1.0)
+    moved = np.any(np.diff(samples, axis=0) != 0, axis=(0, 2))
+    n_moved = int(moved.sum())
+    time = np.full(n_parameters, float(n_steps))
+    if n_moved:
+        time = np.maximum(emcee.autocorr.integrated_time(samples[:, moved], tol=0, quiet=True), 1.0)
     r_hat = split_r_hat(samples)
     warnings = []
+    if n_moved < n_walkers:
+        warnings.append(
+            f"{n_walkers - n_moved} of {n_walkers} walkers never moved: raise sampling.n_burn_in and sampling.n_steps"
+        )
     needed = int(np.ceil(MINIMUM_STEPS_PER_TIME * time.max()))
     if n_steps < needed:
         warnings.append(
@@ -53,7 +67,7 @@ def diagnose_samples(samples: Floats) -> ChainDiagnostics:
     return ChainDiagnostics(
         acceptance_fraction=acceptance_fraction(samples),
         autocorrelation_time=time,
-        effective_sample_size=n_steps * n_walkers / time,
+        effective_sample_size=n_steps * n_moved / time,
         split_r_hat=r_hat,
         sigma=samples.reshape(-1, n_parameters).std(axis=0, ddof=1),
         warning="; ".join(warnings),

@@ -23,15 +23,20 @@ SIGMA_COLUMNS: Final = (
     "sigma_yaw_rad",
 )
 _SIZE: Final = 12
-_TOLERANCE: Final = 1e-9  # of the largest entry: what rounding to a file's digits may leave
+_ASYMMETRY: Final = 1e-9  # as a correlation: both halves are printed alike
+_NEGATIVE: Final = 1e-5  # as an eigenvalue of the correlations: what rounding to six printed digits may leave
 
 
 @dataclass(frozen=True)
 class NavigationCovariances:
-    """Covariances (K, 6, 6) of north, east, down (m), roll, pitch, yaw (rad) at increasing times time_us (K,)."""
+    """Covariances (K, 6, 6) of north, east, down (m), roll, pitch, yaw (rad) at increasing times time_us (K,).
+
+    `source` names where they come from, for messages.
+    """
 
     time_us: NDArray[np.int64]
     covariance: Floats
+    source: str = "navigation"
 
     def median_sigma(self) -> Floats:
         """Median over time of the standard deviations (6,), as Table 2 prints them (there in degrees)."""
@@ -58,25 +63,27 @@ def read_covariances(path: Path, attitude_columns: Sequence[int]) -> NavigationC
     keep = [0, 1, 2, *attitude_columns]
     covariance = numbers.reshape(-1, _SIZE, _SIZE)[:, keep][:, :, keep]
     for row, matrix in enumerate(covariance):
-        _check_covariance(matrix, f"{path}, row {row + 1}")
-    return NavigationCovariances(time_us, covariance)
+        _check_covariance(matrix, keep, f"{path}, row {row + 1}")
+    return NavigationCovariances(time_us, covariance, str(path))
 
 
-def _check_covariance(matrix: Floats, place: str) -> None:
+def _check_covariance(matrix: Floats, names: Sequence[int], place: str) -> None:
+    """Check a covariance (6, 6), whose rows and columns are `names` in the file's matrix."""
     if not np.all(np.isfinite(matrix)):
         raise InputError(place, "a covariance that is no number", "36 finite numbers", "remove or mend the row")
     scale = np.sqrt(np.abs(np.diag(matrix)))
-    bound = _TOLERANCE * np.outer(scale, scale)
-    asymmetry = np.abs(matrix - matrix.T)
-    if np.any(asymmetry > bound):
-        i, j = np.unravel_index(int(np.argmax(asymmetry)), matrix.shape)
-        found = f"covariance {matrix[i, j]:g} at ({i}, {j}) and {matrix[j, i]:g} at ({j}, {i})"
+    asymmetric = np.argwhere(np.abs(matrix - matrix.T) > _ASYMMETRY * np.outer(scale, scale))
+    if asymmetric.size:
+        i, j = asymmetric[0]
+        at, mirrored = (names[i], names[j]), (names[j], names[i])
+        found = f"covariance {matrix[i, j]:g} at {at} and {matrix[j, i]:g} at {mirrored}"
         raise InputError(place, found, "a symmetric matrix", "check the column order, or remove the row")
-    lowest = float(np.linalg.eigvalsh(matrix)[0])
-    if lowest < -_TOLERANCE * float(np.trace(matrix)):
+    unit = np.where(scale > 0, scale, 1.0)
+    lowest = float(np.linalg.eigvalsh(matrix / np.outer(unit, unit))[0])
+    if lowest < -_NEGATIVE:
         raise InputError(
             place,
-            f"a covariance with eigenvalue {lowest:g}",
+            f"a covariance whose correlations have the eigenvalue {lowest:g}",
             "a positive semi-definite matrix",
             "check navigation.covariance_columns, or remove the row",
         )
@@ -87,7 +94,7 @@ def associate_covariances(
 ) -> pd.DataFrame:
     """The points with the covariance of nearest time stamp, and the gap to it in `nav_gap_s` (section 3.3).
 
-    Raises InputError naming the observation whose gap is too large.
+    Raises InputError naming the file, and the observation whose gap is the largest where that is too large.
     """
     time_us = points["time_us"].to_numpy()
     after = np.searchsorted(navigation.time_us, time_us).clip(1, max(len(navigation.time_us) - 1, 1))
@@ -99,8 +106,8 @@ def associate_covariances(
     if gap_s.max() > maximum_gap_s:
         worst = points.iloc[int(gap_s.argmax())]
         raise InputError(
-            f"observation {worst['observation']:g}, point {worst['point']:g}",
-            f"the nearest navigation covariance {gap_s.max():.3f} s away",
+            f"{navigation.source}: observation {worst['observation']:g}, point {worst['point']:g}",
+            f"the covariance nearest to its time {worst['time_us']:.0f} us {gap_s.max():.3f} s away",
             f"at most {maximum_gap_s:g} s",
             "complete the navigation log, correct the clocks, or raise navigation.maximum_gap_s",
         )

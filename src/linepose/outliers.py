@@ -35,6 +35,7 @@ def reject_outliers(
 
     It goes on below the accepted stage, down to `minimum_observations`, so that the whole sequence can be shown.
     `progress` is told the number of observations of each finished stage.
+    Raises EstimationError where no observation has an error, because the likelihood is undefined.
     """
     stages: list[RejectionStage] = []
     remaining = likelihood
@@ -42,6 +43,11 @@ def reject_outliers(
         optimum = optimise(remaining, start, search)
         error_px = remaining.residuals(optimum.parameters).mean_error_px()
         number = remaining.survey.number
+        if np.all(np.isnan(error_px)):
+            raise EstimationError(
+                f"outlier rejection: none of {len(number)} observations has a reprojection error at the optimum; "
+                "check the hand-measured pose and the observations"
+            )
         worst = int(number[np.nanargmax(error_px)])
         stages.append(RejectionStage(number, error_px, optimum, worst))
         progress(len(number))

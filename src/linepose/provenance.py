@@ -37,8 +37,9 @@ def _imports(path: Path) -> tuple[Path, ...]:
             names += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
         elif isinstance(node, ast.Import):
             names += [alias.name for alias in node.names]
-    ours = (name for name in names if name.split(".")[0] == _PACKAGE.name)
-    return tuple(path for name in ours if (path := _path_of(name)).is_file())
+    ours = (name.split(".") for name in names if name.split(".")[0] == _PACKAGE.name)
+    with_packages = (".".join(parts[:n]) for parts in ours for n in range(1, len(parts) + 1))
+    return tuple(path for name in with_packages if (path := _path_of(name)).is_file())
 
 
 def _path_of(module: str) -> Path:

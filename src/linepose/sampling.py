@@ -6,6 +6,7 @@ import emcee
 import numpy as np
 from numpy.typing import ArrayLike
 
+from linepose.errors import InputError
 from linepose.likelihood.base import Likelihood
 from linepose.rotations import Floats
 
@@ -53,8 +54,16 @@ def sample(
     """Samples of the posterior, walkers started around the optimum (P,) (section 3.5).
 
     The same seed gives the same samples on any number of cores: a step's proposals are drawn before they are evaluated.
+    Raises InputError for fewer walkers than two a parameter.
     """
     settings = settings or SamplingSettings()
+    if settings.n_walkers < 2 * likelihood.n_parameters:
+        raise InputError(
+            "sampling.n_walkers",
+            f"{settings.n_walkers} walkers",
+            f"at least {2 * likelihood.n_parameters}, two a parameter",
+            "raise it",
+        )
     random = np.random.RandomState(seed)
     scatter = likelihood.scatter(settings.start_sigma_m, settings.start_sigma_rad)
     start = np.asarray(optimum, dtype=float) + scatter * random.standard_normal((settings.n_walkers, len(scatter)))

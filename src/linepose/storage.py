@@ -33,8 +33,9 @@ def write_table(table: pd.DataFrame, path: Path | str, schema: pa.Schema) -> Non
     """Write a table as Parquet in the schema's columns and order; raises InputError where it does not fit."""
     try:
         arrow = pa.Table.from_pandas(table, schema=schema, preserve_index=False)
-    except (KeyError, pa.ArrowException) as error:
-        raise InputError(str(path), str(error).splitlines()[0], f"columns {schema.names}", "mend the result") from None
+    except (KeyError, ValueError, pa.ArrowException) as error:
+        found = " ".join(str(argument) for argument in error.args).splitlines()[0]
+        raise InputError(str(path), found, f"columns {schema.names} without gaps", "mend the result") from None
     unknown = set(table.columns) - set(schema.names)
     if unknown:
         raise InputError(str(path), f"columns {sorted(unknown)}", f"columns {schema.names}", "mend the result")

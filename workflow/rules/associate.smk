@@ -1,10 +1,6 @@
 rule associate:
     input:
-        points="results/{platform}/points.parquet",
-        covariances=lambda wildcards: FOLDERS[
-            PLATFORMS[wildcards.platform].source.dataset
-        ]
-        / PLATFORMS[wildcards.platform].source.covariances,
+        "results/{platform}/points.parquet",
     output:
         observations="results/{platform}/observations.parquet",
         sigma="results/{platform}/navigation_sigma.parquet",
@@ -14,6 +10,7 @@ rule associate:
         "../../environment.yml"
     params:
         platform=settings,
+        folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
         code=source_digest("linepose.navigation"),
     script:
         "../../scripts/associate.py"

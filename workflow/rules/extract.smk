@@ -1,9 +1,6 @@
 rule extract:
     input:
-        files=dataset_files,
-        sums=lambda wildcards: STUDY.datasets[
-            PLATFORMS[wildcards.platform].source.dataset
-        ],
+        lambda wildcards: f"results/datasets/{PROJECT.platforms[wildcards.platform].source.dataset}.csv",
     output:
         "results/{platform}/points.parquet",
     log:
@@ -12,9 +9,7 @@ rule extract:
         "../../environment.yml"
     params:
         platform=settings,
-        folder=lambda wildcards: str(
-            FOLDERS[PLATFORMS[wildcards.platform].source.dataset]
-        ),
+        folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
         code=source_digest("linepose.extraction.labelled_views"),
     script:
         "../../scripts/extract.py"

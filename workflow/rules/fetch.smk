@@ -1,22 +1,21 @@
-for _name, _dataset in DATASETS.items():
+for key in PROJECT.datasets:
 
     rule:
         name:
-            f"fetch_{_name}"
+            f"fetch_{key}"
         input:
-            sums=STUDY.datasets[_name],
+            sums=STUDY.datasets[key],
         output:
-            expand(
-                "{folder}/{file}",
-                folder=Path(STUDY.data_folders[0]) / _name,
-                file=_dataset.sha256,
-            ),
+            [
+                f"{STUDY.data_folders[0]}/{key}/{file}"
+                for file in PROJECT.datasets[key].sha256
+            ],
         log:
-            f"results/logs/fetch_{_name}.log",
+            f"results/logs/fetch_{key}.log",
         conda:
             "../../environment.yml"
         params:
-            folder=str(Path(STUDY.data_folders[0]) / _name),
+            dataset=key,
             searched=STUDY.data_folders,
             code=source_digest("linepose.datasets"),
         script:

@@ -1,7 +1,7 @@
 REGRESSED = {
-    name: platform.published
-    for name, platform in PLATFORMS.items()
-    if platform.published
+    key: PROJECT.platforms[key].published
+    for key in PLATFORMS
+    if PROJECT.platforms[key].published
 }
 
 

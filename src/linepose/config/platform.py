@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 import yaml
-from pydantic import Field, PositiveFloat, PositiveInt
+from pydantic import Field, PositiveFloat, PositiveInt, field_validator
 
 from linepose.camera import Camera, CameraSigmas
 from linepose.config.schema import Section, validated
@@ -15,6 +15,7 @@ from linepose.rotations import Floats
 
 Triple = tuple[float, float, float]
 NonNegative = Annotated[float, Field(ge=0)]
+AttitudeColumn = Annotated[int, Field(ge=3, le=11)]
 
 
 class SigmasSection(Section):
@@ -52,12 +53,19 @@ class HandMeasuredSection(Section):
 class NavigationSection(Section):
     """How the navigation system's solution is read."""
 
-    covariance_columns: tuple[int, int, int] = Field(
+    covariance_columns: tuple[AttitudeColumn, AttitudeColumn, AttitudeColumn] = Field(
         (3, 4, 5), description="Rows and columns of the 12x12 covariance that hold roll, pitch, yaw (counted from 0)."
     )
     maximum_gap_s: PositiveFloat = Field(
         1.0, description="Largest time between a point and the covariance used for it (s)."
     )
+
+    @field_validator("covariance_columns")
+    @classmethod
+    def _are_different(cls, columns: tuple[int, int, int]) -> tuple[int, int, int]:
+        if len(set(columns)) < len(columns):
+            raise ValueError("three different columns")
+        return columns
 
 
 class LabelledViewsSection(Section):
@@ -136,7 +144,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
             str(path), "no such file", f"one of {', '.join(near) or 'none'}", "create it or correct the name"
         )
     try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+        values = yaml.safe_load(path.read_bytes())
     except yaml.YAMLError as error:
         raise InputError(str(path), " ".join(str(error).split()), "YAML", "correct the file") from None
     if not isinstance(values, dict):

@@ -60,7 +60,7 @@ def _rows(model: type[BaseModel], prefix: str) -> list[tuple[str, str, str]]:
 
 
 def _default(field: FieldInfo) -> str:
-    default: Any = field.get_default(call_default_factory=False)
+    default: Any = field.get_default(call_default_factory=True, validated_data={})
     if default is PydanticUndefined:
         return "required"
     return "see below" if isinstance(default, BaseModel) else f"`{json.dumps(default, default=str)}`"

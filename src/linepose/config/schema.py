@@ -23,7 +23,9 @@ def validated(model: type[Model], values: Any, place: str) -> Model:
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        raise _one_line(model, error.errors()[0], place) from None
+        faults = error.errors()
+        unknown = next((fault for fault in faults if fault["type"] == "extra_forbidden"), None)
+        raise _one_line(model, unknown or faults[0], place) from None  # a misspelt key explains why one is missing
 
 
 def _one_line(model: type[Section], fault: ErrorDetails, place: str) -> InputError:
@@ -35,12 +37,17 @@ def _one_line(model: type[Section], fault: ErrorDetails, place: str) -> InputErr
         remedy = f"did you mean {near[0]}?" if near else "remove it"
         return InputError(where, "an unknown key", f"one of {', '.join(known)}" if known else "no such key", remedy)
     if fault["type"] == "missing":
-        return InputError(where, "no such key", "a value", "add the key")
-    return InputError(where, repr(fault["input"]), _lower_first(fault["msg"]), "correct the value")
+        return InputError(where, "nothing", "a value", "add it")
+    if fault["type"] == "model_type":
+        return InputError(where, repr(fault["input"]), "keys and values", "write `key: value` lines below it")
+    return InputError(where, repr(fault["input"]), _expected(fault["msg"]), "correct the value")
 
 
-def _lower_first(text: str) -> str:
-    return text[:1].lower() + text[1:]
+def _expected(message: str) -> str:
+    """Pydantic's message, without what it opens with: "Input should be a valid number" is "a valid number"."""
+    for opening in ("Input should be ", "Value error, "):
+        message = message.removeprefix(opening)
+    return message[:1].lower() + message[1:]
 
 
 def _keys_at(model: type[Section], location: list[str]) -> list[str]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
-from linepose.config.platform import Platform, load_platform, read_yaml
+from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
 from linepose.optimise import Search
 from linepose.sampling import SamplingSettings
@@ -61,7 +61,9 @@ class Study(Section):
     platforms: list[str] = Field(min_length=1, description="Platforms to run: files of config/platforms.")
     platforms_folder: str = Field("config/platforms", description="Folder of the platform files.")
     published: str = Field("config/published.yaml", description="File of the numbers to regress on.")
-    data_folders: list[str] = Field(["data", "../shared"], description="Folders searched for data sets, in this order.")
+    data_folders: list[str] = Field(
+        ["data", "../shared"], min_length=1, description="Folders searched for data sets, in this order."
+    )
     datasets: dict[str, str] = Field(default_factory=dict, description="Data sets, name to file of their sums.")
     seed: NonNegativeInt = Field(2017, description="Seed from which every random number is derived.")
     search: SearchSection = Field(SearchSection(), description="Optimisation.")
@@ -77,8 +79,3 @@ def load_dataset(path: Path) -> DatasetSection:
 def check_study(values: dict[str, Any], place: str = "config/config.yaml") -> Study:
     """The study that these values describe; raises InputError for the first that is wrong."""
     return validated(Study, values, place)
-
-
-def load_platforms(study: Study, root: Path) -> dict[str, Platform]:
-    """Every platform of the study by name; raises InputError for the first file that is wrong."""
-    return {name: load_platform(root / study.platforms_folder, name) for name in study.platforms}

@@ -37,7 +37,7 @@ def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
         view = _read_view(path, n_pixels)
         if view["time_us"].iloc[0] <= last_us:
             raise InputError(
-                f"{path}, row 1, column 1",
+                f"{path}, row {view.index[0] + 1}, column 1",
                 f"time {view['time_us'].iloc[0]}",
                 f"a time after the view before it ({last_us})",
                 "name the files so that their order is that of time",
@@ -48,11 +48,11 @@ def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
 
 
 def _read_view(path: Path, n_pixels: int) -> pd.DataFrame:
-    """Points of one view, ordered by time."""
+    """Points of one view, ordered by time; the index counts the file's rows from 0."""
     time_us, numbers = read_numbers(path, len(_COLUMNS), _WHAT)
     check_microseconds(time_us, path)
     view = pd.DataFrame(numbers, columns=list(_COLUMNS[1:])).assign(time_us=time_us)
-    labelled = np.isfinite(view["u_px"].to_numpy())
+    labelled = ~np.isnan(view["u_px"].to_numpy())
     if not labelled.all():
         missing = ", ".join(f"{point:g}" for point in view["point"][~labelled])
         log.warning("%s: no label for point %s: left out", path, missing)

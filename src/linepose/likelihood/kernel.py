@@ -56,7 +56,7 @@ def _evaluate(survey: Floats, pose: Floats, rays: Floats, sums: Floats, points: 
         rows = survey[block]
         cast(rows, pose, axes, rays)
         spread(rows, pose, axes, rays)
-        intersect(rays, sums)
+        intersect(rays, rays, sums, sums)
         gather(rays, sums, points)
         solve(points)
         reproject(rows, pose, axes, rays, points, residuals, scores)

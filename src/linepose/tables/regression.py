@@ -50,7 +50,7 @@ def row(
 
 def navigation_rows(name: str, published: Sequence[float], sigma: pd.DataFrame) -> list[dict[str, Any]]:
     """Table 2: median navigation sigmas, m and deg."""
-    obtained = sigma.iloc[0][list(NAVIGATION_SIGMA_COLUMNS)].to_numpy(dtype=float)
+    obtained = sigma.iloc[0][list(NAVIGATION_SIGMA_COLUMNS)].to_numpy(dtype=float, copy=True)
     obtained[3:] = np.rad2deg(obtained[3:])
     labels = [column.replace("_rad", "_deg") for column in NAVIGATION_SIGMA_COLUMNS]
     return [

@@ -1,0 +1,158 @@
+"""What one evaluation of the published likelihood costs, as a plain text table: `python benchmarks/likelihood.py`.
+
+Every figure is the least of many short repetitions, because others may share the machine; the peak is measured in
+between them, so that a ratio holds at the clock rate of the moment.
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numba
+import numpy as np
+from numba import njit
+
+from linepose.camera import Camera
+from linepose.likelihood.operations import floating_point_operations
+from linepose.likelihood.published import PublishedLikelihood
+from linepose.observations import Survey
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "unit" / "likelihood"))
+import reference
+import surveys
+
+POSE = np.array([0.189, -0.142, -0.794, -0.822, 0.738, -1.429])
+TARGETS_MS = {16: (0.045, 0.022, 0.022, 0.011), 25: (0.095, 0.046, 0.048, 0.023)}
+ROWS = 250
+CHAIN = 32
+OBSERVATIONS = (8, 16, 25, 50, 100, 200)
+POINTS = (1, 4, 16, 32, 64, 128, 200)
+
+
+@njit(error_model="numpy", fastmath={"contract"})
+def _chains(values: np.ndarray, factor: float, term: float, rounds: int) -> None:
+    for _ in range(rounds):
+        for k in range(values.shape[0]):
+            value = values[k]
+            for _step in range(CHAIN):
+                value = value * factor + term
+            values[k] = value
+
+
+def peak_flops() -> Callable[[], float]:
+    """A function that measures the double-precision FMA peak of one core: products plus sums per second."""
+    values, rounds = np.linspace(0, 1, 512), 40
+
+    def measure() -> float:
+        seconds = least_seconds(lambda: _chains(values, 0.999, 1e-3, rounds), repetitions=20)
+        return 2 * CHAIN * rounds * len(values) / seconds
+
+    _chains(values, 0.999, 1e-3, 1)
+    assembly = "".join(_chains.inspect_asm().values())
+    if not any("fm" in line and ("ymm" in line or "zmm" in line) for line in assembly.splitlines()):
+        print("note: the peak loop was not compiled to vector FMA on this machine; shares of the peak are too high")
+    return measure
+
+
+def least_seconds(function: Callable[[], object], repetitions: int) -> float:
+    """Least wall time of one call."""
+    seconds = []
+    for _ in range(repetitions):
+        start = time.perf_counter()
+        function()
+        seconds.append(time.perf_counter() - start)
+    return min(seconds)
+
+
+def single_seconds(likelihood: PublishedLikelihood, pose: np.ndarray, budget_s: float = 0.3) -> float:
+    """Least time of one evaluation, call from Python included."""
+    once = least_seconds(lambda: likelihood.log_likelihood(pose), 3)
+    calls = max(1, int(1e-3 / once))
+
+    def run() -> None:
+        for _ in range(calls):
+            likelihood.log_likelihood(pose)
+
+    return least_seconds(run, max(3, int(budget_s / (calls * once)))) / calls
+
+
+def batched_seconds(likelihood: PublishedLikelihood, repetitions: int = 60) -> float:
+    """Least time of one evaluation within a batch on all threads."""
+    poses = POSE + np.random.default_rng(0).normal(0, 1e-3, (ROWS, 6))
+    likelihood.log_likelihoods(poses)
+    return least_seconds(lambda: likelihood.log_likelihoods(poses), repetitions) / ROWS
+
+
+def field_survey() -> Survey:
+    """The Ladybird survey where the field data is at hand, else a synthetic one of its size."""
+    if surveys.FIELD_FOLDER.is_dir():
+        return surveys.field_survey()
+    print("no field data found: figures are those of a synthetic survey of the same size")
+    return surveys.synthetic_survey(25, 15, seed=0, camera=surveys.FIELD_CAMERA)
+
+
+def evaluation_table(survey: Survey, camera: Camera) -> None:
+    """Print milliseconds, ratios to the goals and to the plain reference, and share of the peak, for 16 and 25."""
+    threads, measure_peak = numba.get_num_threads(), peak_flops()
+    print(f"{threads} threads; wall time, least of many repetitions\n")
+    head = ("observations", "ms", "goal", "ms/goal", "GFLOP/s", "peak", "share", "reference ms", "ratio")
+    print("  ".join(f"{name:>12}" for name in ("", *head)))
+    for numbers in (surveys.INLIERS, range(1, 26)):
+        chosen = survey.select(list(numbers))
+        likelihood = PublishedLikelihood(chosen, camera)
+        n, m = chosen.n_observations, chosen.n_points
+        operations = floating_point_operations(n, m)
+        likelihood.log_likelihood(POSE)
+        plain = least_seconds(lambda chosen=chosen: reference.evaluate(chosen, camera, POSE), 1)
+        peak, single, batched = 0.0, np.inf, np.inf
+        for _ in range(5):
+            peak = max(peak, measure_peak())
+            single = min(single, single_seconds(likelihood, POSE))
+            batched = min(batched, batched_seconds(likelihood))
+        _, goal_single, _, goal_batched = TARGETS_MS[n]
+        rows = (("single", single, goal_single, peak), ("batched", batched, goal_batched, peak * threads))
+        for name, seconds, goal, ceiling in rows:
+            rate = operations / seconds
+            cells = (
+                f"{n}",
+                f"{1e3 * seconds:.4f}",
+                f"{goal:.3f}",
+                f"{1e3 * seconds / goal:.2f}",
+                f"{rate / 1e9:.1f}",
+                f"{ceiling / 1e9:.1f}",
+                f"{rate / ceiling:.0%}",
+                f"{1e3 * plain:.0f}",
+                f"{plain / seconds:.0f}",
+            )
+            print("  ".join(f"{cell:>12}" for cell in (name, *cells)))
+
+
+def scaling_table(title: str, sizes: tuple[int, ...], likelihoods: Callable[[int], PublishedLikelihood]) -> None:
+    """Print the cost of one evaluation against a size, and the exponent with which the larger half of it grows."""
+    print(f"\n{title:>12}  {'ms':>10}")
+    milliseconds = []
+    for size in sizes:
+        likelihood = likelihoods(size)
+        likelihood.log_likelihood(surveys.SYNTHETIC_POSE)
+        milliseconds.append(1e3 * single_seconds(likelihood, surveys.SYNTHETIC_POSE))
+        print(f"{size:>12}  {milliseconds[-1]:>10.4f}")
+    whole = np.polyfit(np.log(sizes), np.log(milliseconds), 1)[0]
+    half = len(sizes) // 2
+    upper = np.polyfit(np.log(sizes[half:]), np.log(milliseconds[half:]), 1)[0]
+    print(f"exponent {whole:.2f}; {upper:.2f} from {sizes[half]} up")
+
+
+def main() -> None:
+    """Print all tables."""
+    evaluation_table(field_survey(), surveys.FIELD_CAMERA)
+
+    def synthetic(n_observations: int, n_points: int) -> PublishedLikelihood:
+        return PublishedLikelihood(surveys.synthetic_survey(n_observations, n_points, 0), surveys.DISTORTED_CAMERA)
+
+    scaling_table("observations", OBSERVATIONS, lambda n: synthetic(n, 15))
+    scaling_table("points", POINTS, lambda m: synthetic(16, m))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+"""All that a run is configured by: the study, its platforms, its data sets and the folders they are in."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linepose.config.platform import Platform, load_platform
+from linepose.config.study import DatasetSection, Study, check_study, load_dataset
+from linepose.datasets import find_dataset
+from linepose.errors import InputError
+
+
+@dataclass(frozen=True)
+class Project:
+    """A checked configuration; `folders` says where each data set was found, or will be downloaded to.
+
+    A data set that `datasets` does not list has no sums: it is the user's own, found in a data folder.
+    """
+
+    study: Study
+    platforms: Mapping[str, Platform]
+    datasets: Mapping[str, DatasetSection]
+    folders: Mapping[str, Path]
+
+    def files(self, dataset: str) -> list[Path]:
+        """Every file of a data set that its platforms read."""
+        folder = self.folders[dataset]
+        if dataset in self.datasets:
+            return [folder / file for file in self.datasets[dataset].sha256]
+        sources = [platform.source for platform in self.platforms.values() if platform.source.dataset == dataset]
+        views = {path for source in sources for path in folder.glob(source.views)}
+        return sorted(views | {folder / source.covariances for source in sources})
+
+    def sums(self, dataset: str) -> dict[str, str | None]:
+        """SHA-256 of each file of a data set by its path there, None for the user's own."""
+        known = self.datasets[dataset].sha256 if dataset in self.datasets else {}
+        folder = self.folders[dataset]
+        paths = [path.relative_to(folder).as_posix() for path in self.files(dataset)]
+        return {path: known.get(path) for path in paths}
+
+    def folder(self, platform: str) -> Path:
+        """Folder of the platform's data set."""
+        return self.folders[self.platforms[platform].source.dataset]
+
+
+def load_project(values: dict[str, Any], root: Path) -> Project:
+    """The project that config.yaml's values and the files they name describe.
+
+    Raises InputError for the first key, file or name that is wrong.
+    """
+    study = check_study(values)
+    platforms = {name: load_platform(root / study.platforms_folder, name) for name in study.platforms}
+    datasets = {name: load_dataset(root / sums) for name, sums in study.datasets.items()}
+    searched = [root / folder for folder in study.data_folders]
+    folders = {}
+    for name, platform in platforms.items():
+        dataset = platform.source.dataset
+        known = list(datasets[dataset].sha256) if dataset in datasets else []
+        found = find_dataset(dataset, known, searched)
+        if found is None and dataset not in datasets:
+            raise InputError(
+                f"{root / study.platforms_folder / name}.yaml: source.dataset",
+                f"no folder {dataset} in {', '.join(study.data_folders)}",
+                "a folder with the platform's files",
+                f"put them in {searched[0] / dataset}",
+            )
+        folders[dataset] = found or searched[0] / dataset
+    return Project(study, platforms, datasets, folders)

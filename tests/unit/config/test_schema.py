@@ -1,0 +1,118 @@
+from typing import Annotated, Literal
+
+import pytest
+from pydantic import Field, PositiveInt
+
+from linepose.config.schema import Section, validated
+from linepose.errors import InputError
+
+
+class Lens(Section):
+    focal_length_m: float
+    k1: float = 0.0
+
+
+class ByFile(Section):
+    kind: Literal["file"]
+    path: str = ""
+
+
+class ByNumber(Section):
+    kind: Literal["number"]
+    value: int = 0
+
+
+class Settings(Section):
+    lens: Lens
+    count: PositiveInt = 1
+    corner: tuple[float, float] = (0.0, 0.0)
+    names: list[str] = Field(default=["a"], min_length=1)
+    source: Annotated[ByFile | ByNumber, Field(discriminator="kind")] = ByFile(kind="file")
+
+
+GOOD = {"lens": {"focal_length_m": 0.008}}
+
+
+def message_of(values):
+    with pytest.raises(InputError) as error:
+        validated(Settings, values, "s.yaml")
+    return str(error.value)
+
+
+def test_values_become_a_model():
+    settings = validated(Settings, GOOD | {"count": 3, "corner": [1, 2.5]}, "s.yaml")
+    assert settings.lens.focal_length_m == 0.008
+    assert settings.corner == (1.0, 2.5)
+
+
+def test_number_that_yaml_takes_for_text_is_a_number():
+    assert validated(Settings, {"lens": {"focal_length_m": "1e-4"}}, "s.yaml").lens.focal_length_m == 1e-4
+
+
+def test_models_do_not_change():
+    with pytest.raises(ValueError, match="frozen"):
+        validated(Settings, GOOD, "s.yaml").count = 2
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (
+            GOOD | {"cuont": 3},
+            "s.yaml: cuont: found an unknown key, expected one of lens, count, corner, names, source; "
+            "did you mean count?",
+        ),
+        (
+            GOOD | {"zebra": 3},
+            "s.yaml: zebra: found an unknown key, expected one of lens, count, corner, names, source; remove it",
+        ),
+        (
+            {"lens": {"focal_length_m": 0.008, "k_1": 0.1}},
+            "s.yaml: lens.k_1: found an unknown key, expected one of focal_length_m, k1; did you mean k1?",
+        ),
+        (  # a misspelt key that must be there: the misspelling is told of, not the absence
+            {"lens": {"focal_lenght_m": 0.008}},
+            "s.yaml: lens.focal_lenght_m: found an unknown key, expected one of focal_length_m, k1; "
+            "did you mean focal_length_m?",
+        ),
+        ({"lens": {}}, "s.yaml: lens.focal_length_m: found nothing, expected a value; add it"),
+        ({}, "s.yaml: lens: found nothing, expected a value; add it"),
+        (GOOD | {"corner": [1.0]}, "s.yaml: corner.1: found nothing, expected a value; add it"),
+        (
+            {"lens": {"focal_length_m": float("nan")}},
+            "s.yaml: lens.focal_length_m: found nan, expected a finite number; correct the value",
+        ),
+        (
+            {"lens": {"focal_length_m": float("inf")}},
+            "s.yaml: lens.focal_length_m: found inf, expected a finite number; correct the value",
+        ),
+        (
+            {"lens": {"focal_length_m": "8 mm"}},
+            "s.yaml: lens.focal_length_m: found '8 mm', expected a valid number, "
+            "unable to parse string as a number; correct the value",
+        ),
+        (
+            {"lens": {"focal_length_m": None}},
+            "s.yaml: lens.focal_length_m: found None, expected a valid number; correct the value",
+        ),
+        (GOOD | {"count": 0}, "s.yaml: count: found 0, expected greater than 0; correct the value"),
+        (
+            GOOD | {"names": []},
+            "s.yaml: names: found [], expected list should have at least 1 item after validation, not 0; "
+            "correct the value",
+        ),
+        (
+            {"lens": 0.008},
+            "s.yaml: lens: found 0.008, expected keys and values; write `key: value` lines below it",
+        ),
+        ([], "s.yaml: top level: found [], expected keys and values; write `key: value` lines below it"),
+    ],
+)
+def test_fault_is_told_in_one_line(values, message):
+    assert message_of(values) == message
+
+
+def test_unknown_key_of_one_kind_among_several_is_refused():
+    message = message_of(GOOD | {"source": {"kind": "file", "pth": "x"}})
+    assert "pth: found an unknown key" in message
+    assert "\n" not in message
