@@ -21,6 +21,7 @@ _BRIGHT_MARK: Final = 0.6  # of the way from the holes to the rings
 _DARK_CORNER: Final = 0.4
 _RING_M: Final = 0.048
 _MARK_CORE: Final = 0.3  # of the mark's side, each way from its centre: clear of the edge
+_MAP_ERROR_M: Final = 0.012  # that the map may be off beyond the outermost targets
 _TOWARDS_TARGET: Final = 0.45  # of the way from the mark to the target beside it: dark print
 _ID_OF_CELL: Final = {
     (round(x), round(y)): number
@@ -59,19 +60,24 @@ def _ways(cell: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
 
 
 def _mark_shows(intensity: Intensity, board: BoardInScan, ids: NDArray[np.int64]) -> bool:
-    """Whether the mark is bright, the print beside it dark, and the other corners dark or beyond the scan."""
+    """Whether the mark is bright, the print beside it dark, and the other corners dark or beyond the scan.
+
+    Each is looked for a little around its place: the map extrapolates here.
+    """
     angle = np.linspace(0, 2 * np.pi, 16, endpoint=False)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     dark = np.nanmedian(_sampled(intensity, board, BOARD_M[ids, None] + 0.6 * HOLE_RADIUS_M * circle))
     bright = np.nanmedian(_sampled(intensity, board, BOARD_M[ids, None] + _RING_M * circle))
     mark = np.array(CORNER_MARK_CENTRE_M)
     corners = mark * np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]])
-    core = CORNER_MARK_SIDE_M * _MARK_CORE * np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
-    level = (_sampled(intensity, board, corners[:, None] + core).mean(axis=1) - dark) / (bright - dark)
+    grid = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
+    core, shift = CORNER_MARK_SIDE_M * _MARK_CORE * grid, _MAP_ERROR_M * grid
+    level = _sampled(intensity, board, corners[:, None, None] + shift[:, None] + core).mean(axis=2)
+    level = (level - dark) / (bright - dark)  # (4 corners, 9 shifts)
     beside = mark + _TOWARDS_TARGET * (BOARD_M[0] - mark)
-    print_level = (float(_sampled(intensity, board, beside[None])[0]) - dark) / (bright - dark)
-    others = level[1:]
-    return bool(level[0] > _BRIGHT_MARK and print_level < _DARK_CORNER and not np.any(others >= _DARK_CORNER))
+    print_level = (_sampled(intensity, board, beside + shift).min() - dark) / (bright - dark)
+    elsewhere = level[1:].min(axis=1)
+    return bool(level[0].max() > _BRIGHT_MARK and print_level < _DARK_CORNER and not np.any(elsewhere >= _DARK_CORNER))
 
 
 def _sampled(intensity: Intensity, board: BoardInScan, board_m: Floats) -> Floats:
