@@ -27,7 +27,7 @@ from linepose.simulate.survey import faulty_observations, reported_covariance
 from linepose.simulate.trajectory import body_poses, schedule, time_us
 
 _NAVIGATION, _LABELS, _IMAGES = 1, 2, 3  # streams of random numbers, so that one part does not move another
-_BLOCK_VALUES: Final = 16_000_000  # pixels times bands that are in memory at once
+_BLOCK_VALUES: Final = 4_000_000  # pixels times bands that are in memory at once
 _COVARIANCE_SIZE: Final = 12
 _COVARIANCE_RATE_HZ: Final = 1.0
 _LABEL_REACH: Final = 3.0  # in sigmas: nobody clicks beyond

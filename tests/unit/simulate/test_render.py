@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from linepose.simulate.board import DOT_DIAMETER_M
 from linepose.simulate.projection import exact_projections
 from linepose.simulate.record import true_lines
 from linepose.simulate.render import line_times_s, render
@@ -28,13 +29,14 @@ def test_rendered_dots_lie_at_the_exact_projections(camera, settings, observatio
     lines_per_m = settings.image.line_rate_hz / speed
     half_lines = round(0.014 * lines_per_m)
     range_m = np.linalg.norm(truth.position_m[observation - 1].mean(axis=0))
-    # a dot sampled on a grid is known to half a grid step; across the line the view is oblique by about 1 / cos 56 deg
+    # samples one step apart misplace a dot's two edges by half a step each, and the edges are a step of its diameter;
+    # along the drive the view is oblique by 1 / cos 56 deg = 1.8
     step_m = settings.image.ifov_rad * range_m / settings.image.supersampling
-    step_px = settings.image.ifov_rad * camera.focal_length_px / settings.image.supersampling
+    off_m = step_m**2 / DOT_DIAMETER_M
     for u, line in zip(truth.u_px[observation - 1], lines[observation - 1], strict=True):
         found_u, found_line = dot_centre(light, u, line, half_lines)
-        assert found_u == pytest.approx(u, abs=step_px / 2)
-        assert found_line == pytest.approx(line, abs=step_m * 1.8 * lines_per_m / 2)
+        assert found_u == pytest.approx(u, abs=off_m / range_m * camera.focal_length_px)
+        assert found_line == pytest.approx(line, abs=off_m * 1.8 * lines_per_m)
 
 
 def flat_passes(settings, *speeds):
