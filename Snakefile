@@ -15,12 +15,14 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/fetch.smk"
 include: "workflow/rules/compile.smk"
 include: "workflow/rules/check_data.smk"
+include: "workflow/rules/simulate.smk"
 include: "workflow/rules/extract.smk"
 include: "workflow/rules/associate.smk"
 include: "workflow/rules/reject_outliers.smk"
 include: "workflow/rules/optimise.smk"
 include: "workflow/rules/sample.smk"
 include: "workflow/rules/diagnose.smk"
+include: "workflow/rules/truth_error.smk"
 include: "workflow/rules/regression.smk"
 
 
@@ -29,5 +31,6 @@ rule all:
     input:
         expand("results/{platform}/pose.parquet", platform=PLATFORMS),
         expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
+        expand("results/{platform}/truth_error.parquet", platform=PROJECT.simulated),
         "results/regression.parquet",
         "results/logs/regression.passed",

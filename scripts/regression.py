@@ -1,12 +1,14 @@
 """Hold the results against the published numbers."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import pandas as pd
 from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
-    from linepose.result_schemas import NAVIGATION_SIGMA, OUTLIERS, POSE, REGRESSION
+    from linepose.result_schemas import NAVIGATION_SIGMA, OUTLIERS, POSE, REGRESSION, TRUTH_ERROR
     from linepose.storage import read_table, write_csv, write_table
     from linepose.tables.regression import PlatformResults, regression_table
 
@@ -18,6 +20,9 @@ with stage(snakemake) as log:
         )
         for name, pose, outliers, sigma in files
     }
+    known_truth = zip(snakemake.params.on_truth, snakemake.input.truth, snakemake.input.truth_error, strict=True)
+    for name, truth, error in known_truth:
+        results[name] = replace(results[name], truth=pd.read_parquet(truth), truth_error=read_table(error, TRUTH_ERROR))
     table = regression_table(read_yaml(Path(snakemake.input.published)), results, published_as)
     write_table(table, snakemake.output.parquet, REGRESSION)
     write_csv(table, snakemake.output.csv)

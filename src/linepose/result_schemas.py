@@ -30,6 +30,7 @@ def _flags(*names: str) -> list[pa.Field]:
 _POINT = [*_whole("observation", "point", "time_us"), *_floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS)]
 
 POINTS: Final = pa.schema(_POINT)
+SCAN_POINTS: Final = pa.schema([*_whole("observation", "point", "time_us"), *_floats("u_px", "line")])
 OBSERVATIONS: Final = pa.schema([*_POINT, *_floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
 OUTLIERS: Final = pa.schema(
     [
@@ -78,6 +79,14 @@ POSE: Final = pa.schema(
     ]
 )
 NAVIGATION_SIGMA: Final = pa.schema(_floats(*navigation.SIGMA_COLUMNS))
+TRUTH_ERROR: Final = pa.schema(
+    [
+        *_texts("stage"),
+        *_whole("n_observations"),
+        *_texts("quantity"),
+        *_floats("error", "sigma", "error_in_sigmas"),
+    ]
+)
 REGRESSION: Final = pa.schema(
     [
         *_texts("quantity"),

@@ -3,6 +3,7 @@ REGRESSED = {
     for key in PLATFORMS
     if PROJECT.platforms[key].published
 }
+REGRESSED_ON_TRUTH = [key for key in REGRESSED if key in PROJECT.simulated]
 
 
 rule regression:
@@ -11,6 +12,10 @@ rule regression:
         pose=expand("results/{platform}/pose.parquet", platform=REGRESSED),
         outliers=expand("results/{platform}/outliers.parquet", platform=REGRESSED),
         sigma=expand("results/{platform}/navigation_sigma.parquet", platform=REGRESSED),
+        truth=expand("results/{platform}/truth.parquet", platform=REGRESSED_ON_TRUTH),
+        truth_error=expand(
+            "results/{platform}/truth_error.parquet", platform=REGRESSED_ON_TRUTH
+        ),
     output:
         parquet="results/regression.parquet",
         csv="results/regression.csv",
@@ -20,6 +25,7 @@ rule regression:
         "../../environment.yml"
     params:
         published_as=REGRESSED,
+        on_truth=REGRESSED_ON_TRUTH,
         code=source_digest("linepose.tables.regression"),
     script:
         "../../scripts/regression.py"

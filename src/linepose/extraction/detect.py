@@ -33,6 +33,7 @@ class Detection:
     u_px: Floats
     line: Floats
     doubt: str = ""
+    board_found: bool = True
 
 
 @dataclass(frozen=True)
@@ -55,15 +56,16 @@ def detect(scan: Scan, refine: Refine) -> Detection:
         if best.n_targets == len(BOARD_M) and len(best.boards) == 1:
             break
     if best.n_targets < _FEWEST_TARGETS:
-        return _nothing(f"no board: {best.n_targets} rings in a lattice where at least {_FEWEST_TARGETS} are needed")
+        found = f"no board: {best.n_targets} rings in a lattice where at least {_FEWEST_TARGETS} are needed"
+        return _nothing(found, board_found=False)
     if len(best.boards) != 1:
         kind = "not seen" if not best.boards else "seen in several corners"
-        return _nothing(f"{best.n_targets} rings, but the corner mark is {kind}: the ids are open")
+        return _nothing(f"{best.n_targets} rings, but the corner mark is {kind}: the ids are open", board_found=True)
     return _points(scan.intensity, best.boards[0], refine)
 
 
-def _nothing(doubt: str) -> Detection:
-    return Detection(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), doubt)
+def _nothing(doubt: str, board_found: bool) -> Detection:
+    return Detection(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), doubt, board_found)
 
 
 def _view(intensity: Intensity, block: int) -> _View:
