@@ -15,6 +15,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/fetch.smk"
 include: "workflow/rules/compile.smk"
 include: "workflow/rules/check_data.smk"
+include: "workflow/rules/simulate.smk"
 include: "workflow/rules/extract.smk"
 include: "workflow/rules/associate.smk"
 include: "workflow/rules/reject_outliers.smk"
@@ -31,6 +32,7 @@ include: "workflow/rules/basin_summary.smk"
 include: "workflow/rules/mapping.smk"
 include: "workflow/rules/sensitivity.smk"
 include: "workflow/rules/experiments.smk"
+include: "workflow/rules/truth_error.smk"
 include: "workflow/rules/regression.smk"
 include: "workflow/rules/published_tables.smk"
 
@@ -42,5 +44,6 @@ rule all:
         expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
         rules.experiments.input,
         rules.published_tables.output if COMPARED else [],
+        expand("results/{platform}/truth_error.parquet", platform=PROJECT.simulated),
         "results/regression.parquet",
         "results/logs/regression.passed",

@@ -34,6 +34,7 @@ def flags(*names: str) -> list[pa.Field]:
 _POINT = [*whole_numbers("observation", "point", "time_us"), *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS)]
 
 POINTS: Final = pa.schema(_POINT)
+SCAN_POINTS: Final = pa.schema([*whole_numbers("observation", "point", "time_us"), *floats("u_px", "line")])
 OBSERVATIONS: Final = pa.schema([*_POINT, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
 OUTLIERS: Final = pa.schema(
     [
@@ -82,6 +83,14 @@ POSE: Final = pa.schema(
     ]
 )
 NAVIGATION_SIGMA: Final = pa.schema(floats(*navigation.SIGMA_COLUMNS))
+TRUTH_ERROR: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("n_observations"),
+        *texts("quantity"),
+        *floats("error", "sigma", "error_in_sigmas"),
+    ]
+)
 REGRESSION: Final = pa.schema(
     [
         *texts("quantity"),
