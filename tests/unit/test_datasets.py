@@ -69,8 +69,18 @@ def test_part_of_a_data_set_is_named(tmp_path):
     )
 
 
+def test_data_set_whose_files_nobody_lists_is_any_folder(tmp_path):
+    (tmp_path / "robot").mkdir()
+    assert find_dataset("robot", [], [tmp_path / "data", tmp_path]) == tmp_path / "robot"
+    assert find_dataset("rover", [], [tmp_path]) is None
+
+
 def test_whole_data_set_passes(tmp_path):
-    check_dataset(put(tmp_path), SHA256)
+    assert check_dataset(put(tmp_path), SHA256) == SHA256
+
+
+def test_file_without_a_known_sum_is_told_its_sum(tmp_path):
+    assert check_dataset(put(tmp_path), SHA256 | {"COPYING": None}) == SHA256
 
 
 @pytest.mark.parametrize(("data", "size"), [(b"4,5,7\n", 6), (b"4,5", 3), (b"", 0)])

@@ -1,15 +1,10 @@
-from pathlib import Path
-
 import numpy as np
 import pytest
-import yaml
 
-from linepose.config.study import Study, check_study, load_dataset, load_platforms
+from linepose.config.study import check_study, load_dataset
 from linepose.errors import InputError
 from linepose.optimise import Search
 from linepose.sampling import SamplingSettings
-
-ROOT = Path(__file__).parents[3]
 
 
 def message_of(values):
@@ -46,14 +41,6 @@ def test_values_reach_the_library_in_its_units():
     )
     assert study.search.settings() == Search(1.0, np.pi / 2, 1e-3, 1e-4)
     assert study.sampling.settings() == SamplingSettings(20, 0, 7, 2.0, 0.3, 0.4)
-
-
-def test_committed_configuration_is_valid_and_its_platforms_load():
-    study = check_study(yaml.safe_load((ROOT / "config" / "config.yaml").read_text()))
-    platforms = load_platforms(study, ROOT)
-    assert list(platforms) == study.platforms
-    datasets = {name: load_dataset(ROOT / path) for name, path in study.datasets.items()}
-    assert all(platform.source.dataset in datasets for platform in platforms.values())
 
 
 def test_committed_dataset_is_pinned_and_whole(ladybird_dataset):
@@ -112,13 +99,6 @@ def test_misspelt_section_is_named():
     message = message_of({"platforms": ["a"], "sampler": {}})
     assert message.startswith("config/config.yaml: sampler: found an unknown key, expected one of platforms, ")
     assert message.endswith("; did you mean sampling?")
-
-
-def test_first_wrong_platform_is_named(tmp_path):
-    study = Study(platforms=["robot"], platforms_folder="there")
-    with pytest.raises(InputError) as error:
-        load_platforms(study, tmp_path)
-    assert str(error.value).startswith(f"{tmp_path}/there/robot.yaml: found no such file")
 
 
 def test_dataset_file_without_sums(tmp_path):
