@@ -1,0 +1,33 @@
+"""What a figure asks of its tables before it draws: it would rather say what is missing than show an empty axis."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from linepose.errors import InputError
+
+
+def usable_rows(table: pd.DataFrame, columns: Sequence[str], name: str) -> pd.DataFrame:
+    """The table, where it has rows and these columns and every number in them is finite; raises InputError otherwise."""
+    missing = [column for column in columns if column not in table.columns]
+    if missing:
+        raise InputError(name, f"no column {', '.join(missing)}", f"columns {', '.join(columns)}", "run its stage again")
+    if table.empty:
+        raise InputError(name, "no rows", "at least one", "run its stage again")
+    for column in columns:
+        if table[column].dtype.kind == "f" and not np.all(np.isfinite(table[column])):
+            count = int((~np.isfinite(table[column])).sum())
+            raise InputError(
+                name, f"{count} of {len(table)} numbers of {column} not finite", "finite numbers", "run its stage again"
+            )
+    return table
+
+
+def stage_row(table: pd.DataFrame, stage: str, columns: Sequence[str], name: str) -> pd.Series:
+    """The row of one stage, such as `inliers` or `hand_measured`; raises InputError where there is none."""
+    rows = usable_rows(table, ["stage"], name)
+    rows = rows[rows["stage"] == stage]
+    if rows.empty:
+        raise InputError(name, f"no stage {stage}", "one row for it", "run its stage again")
+    return usable_rows(rows, columns, name).iloc[0]
