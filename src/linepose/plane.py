@@ -43,6 +43,16 @@ def fit_plane(points_m: ArrayLike) -> Plane:
     return Plane(centre, normal if normal[2] >= 0 else -normal)
 
 
+def fit_plane_by_height(points_m: ArrayLike) -> Plane:
+    """Plane `down = a north + b east + c` of least squared heights (Eq. 26), for comparison; points (K, 3)."""
+    points = np.asarray(points_m, dtype=float)
+    points = points[np.all(np.isfinite(points), axis=1)]
+    centre = points.mean(axis=0)
+    slopes = np.linalg.lstsq((points - centre)[:, :2], (points - centre)[:, 2], rcond=None)[0]
+    normal = np.append(-slopes, 1.0)
+    return Plane(centre, normal / np.linalg.norm(normal))
+
+
 def intersect(plane: Plane, centres_m: ArrayLike, directions: ArrayLike) -> Floats:
     """Where rays `centre + t direction` meet the plane (Eq. 27); (..., 3) each to (..., 3).
 

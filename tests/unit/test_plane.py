@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linepose.errors import EstimationError
-from linepose.plane import Plane, fit_plane, intersect
+from linepose.plane import Plane, fit_plane, fit_plane_by_height, intersect
 
 
 def points_on(normal, centre, noise=0.0, n=200, seed=1):
@@ -28,17 +28,18 @@ def test_agrees_with_equation_26_on_a_flat_plane():
     noise = 1e-3
     points = points_on([0.1, -0.2, 0.95], np.zeros(3), noise)
     design = np.column_stack([points[:, :2], np.ones(len(points))])
-    a, b, _ = np.linalg.lstsq(design, points[:, 2], rcond=None)[0]
+    a, b, c = np.linalg.lstsq(design, points[:, 2], rcond=None)[0]
     normal = np.array([-a, -b, 1]) / np.linalg.norm([a, b, 1])
     extent = points[:, :2].std()
     np.testing.assert_allclose(fit_plane(points).normal, normal, atol=3 * (noise / extent) ** 2)
+    by_height = fit_plane_by_height(points)
+    np.testing.assert_allclose(by_height.normal, normal, atol=1e-12)
+    assert by_height.height_m([0, 0, c]) == pytest.approx(0, abs=1e-12)
 
 
 def test_equation_26_fails_on_an_upright_plane_where_this_fit_does_not():
     points = points_on([1, 0, 0], np.zeros(3), 1e-3)
-    design = np.column_stack([points[:, :2], np.ones(len(points))])
-    a, b, _ = np.linalg.lstsq(design, points[:, 2], rcond=None)[0]
-    assert np.degrees(np.arccos(1 / np.linalg.norm([a, b, 1]))) < 89
+    assert np.degrees(np.arccos(fit_plane_by_height(points).normal[2])) < 89
     assert abs(fit_plane(points).normal[0]) > np.cos(np.radians(0.1))
 
 

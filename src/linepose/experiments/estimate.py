@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from linepose.errors import EstimationError
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Optimum, Search, laplace_covariance, optimise
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
@@ -59,10 +60,14 @@ def estimate_by_sampling(
 def estimate_by_curvature(likelihood: Likelihood, start: ArrayLike, search: Search | None = None) -> Estimate:
     """The optimum from a start pose (6,), with the covariance of the curvature there: a thousand times cheaper.
 
-    Raises EstimationError where the observations leave a direction of the pose open.
+    The covariance is NaN where the observations leave a direction of the pose open.
     """
     optimum = optimise(likelihood, start, search)
-    return _estimate(likelihood, optimum, laplace_covariance(likelihood, optimum.parameters))
+    try:
+        covariance = laplace_covariance(likelihood, optimum.parameters)
+    except EstimationError:
+        covariance = np.full((likelihood.n_parameters, likelihood.n_parameters), np.nan)
+    return _estimate(likelihood, optimum, covariance)
 
 
 def _estimate(likelihood: Likelihood, optimum: Optimum, covariance: Floats) -> Estimate:

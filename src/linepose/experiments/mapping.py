@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from linepose.camera import Camera, rays, undistort
 from linepose.observations import Survey
-from linepose.plane import Plane, intersect
+from linepose.plane import Plane, fit_plane_by_height, intersect
 from linepose.pose import N_PARAMETERS
 from linepose.rotations import (
     Floats,
@@ -117,6 +117,51 @@ def mapping_table(
             )
         )
     return pd.concat(parts, ignore_index=True)
+
+
+def mapping_summary(
+    table: pd.DataFrame, plane: Plane, estimated_points_m: ArrayLike, accepted: ArrayLike
+) -> pd.DataFrame:
+    """Two rows a pose of `mapping_table`, of all observations and of the accepted ones: how far projections scatter.
+
+    `spread_mm` is the RMS distance to each point's mean, `sigma_mm` what the covariances predict of one projection.
+    The plane stands beside it: its normal, the RMS distance of the estimated points (M, 3) from it, and the angle to
+    the plane of Eq. 26.
+    """
+    by_height = fit_plane_by_height(estimated_points_m)
+    about_plane = {
+        **{f"normal_{axis}": plane.normal[k] for k, axis in enumerate(_AXES)},
+        "plane_rms_mm": float(1e3 * np.sqrt(np.nanmean(plane.height_m(estimated_points_m) ** 2))),
+        "equation_26_angle_rad": float(
+            np.arctan2(np.linalg.norm(np.cross(by_height.normal, plane.normal)), by_height.normal @ plane.normal)
+        ),
+    }
+    rows = []
+    for pose in table["pose"].unique():
+        for name, chosen in (("all", table["observation"].unique()), ("accepted", np.asarray(accepted))):
+            part = table[(table["pose"] == pose) & table["observation"].isin(chosen)]
+            projected = _gridded(part)
+            variance = part[[PROJECTED_COVARIANCE_COLUMNS[k] for k in (0, 3, 5)]].sum(axis=1, skipna=False)
+            rows.append(
+                {
+                    "pose": pose,
+                    "observations": name,
+                    "n_projected": int(np.isfinite(projected[..., 0]).sum()),
+                    "spread_mm": spread_mm(projected - np.nanmean(projected, axis=(0, 1))),
+                    "sigma_mm": float(1e3 * np.sqrt(variance.mean())),
+                    **about_plane,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def _gridded(part: pd.DataFrame) -> Floats:
+    """Projections of one pose's rows as (N, M, 3), NaN where there is none."""
+    observations, row = np.unique(part["observation"], return_inverse=True)
+    points, column = np.unique(part["point"], return_inverse=True)
+    grid = np.full((len(observations), len(points), 3), np.nan)
+    grid[row, column] = part[list(PROJECTED_COLUMNS)].to_numpy()
+    return grid
 
 
 def _rays(survey: Survey, camera: Camera, pose: Floats) -> tuple[Floats, Floats]:

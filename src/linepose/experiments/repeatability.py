@@ -17,11 +17,10 @@ from linepose.distance import (
     mahalanobis_distance,
     p_value,
 )
-from linepose.errors import EstimationError, InputError
+from linepose.errors import InputError
 from linepose.experiments.estimate import Estimate, estimate_by_curvature, observation_list
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Search
-from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 
 
 def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> None:
@@ -34,8 +33,14 @@ def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> N
 
 
 def consistency(first: Estimate, second: Estimate) -> dict[str, float]:
-    """How far two independent estimates lie apart: metres, radians, sigmas, and the p-value of that."""
-    distance = mahalanobis_between(first.pose, first.covariance, second.pose, second.covariance)
+    """How far two independent estimates lie apart: metres, radians, sigmas, and the p-value of that.
+
+    The last two are NaN where an estimate has no covariance. Raises EstimationError for a singular one.
+    """
+    known = np.all(np.isfinite(first.covariance + second.covariance))
+    distance = (
+        mahalanobis_between(first.pose, first.covariance, second.pose, second.covariance) if known else float("nan")
+    )
     return {
         "distance_m": float(euclidean_distance_m(first.pose, second.pose)),
         "angle_rad": float(geodesic_angle_rad(first.pose, second.pose)),
@@ -67,23 +72,20 @@ def random_splits(
 ) -> pd.DataFrame:
     """One row a random split: the two poses, with sigmas from the curvature, and how far they lie apart; start (6,).
 
-    A row depends on the seed and its index alone. Where a subset leaves a direction of the pose open, the row's
-    sigmas and its distance in sigmas are NaN.
+    A row depends on the seed and its index alone. Where a subset leaves a direction of the pose open, its sigmas and
+    the distance in sigmas are NaN.
     """
     rows = []
     for index in indices:
         halves = split_numbers(likelihood.survey.number, size, seed, index)
-        row: dict[str, object] = {"split": index}
-        try:
-            first, second = (estimate_by_curvature(likelihood.select(half), start, search) for half in halves)
-            agreement = consistency(first, second)
-        except EstimationError:
-            rows.append(row | {f"observations_{k}": observation_list(half) for k, half in enumerate(halves, 1)})
-            continue
-        for k, estimate in enumerate((first, second), 1):
-            row |= {f"{name}_{k}": value for name, value in estimate.row().items()}
-        rows.append(row | agreement)
-    return pd.DataFrame(rows, columns=list(SPLIT_COLUMNS))
+        first, second = (estimate_by_curvature(likelihood.select(half), start, search) for half in halves)
+        columns = {
+            f"{name}_{k}": value
+            for k, estimate in enumerate((first, second), 1)
+            for name, value in estimate.row().items()
+        }
+        rows.append({"split": index, **columns, **consistency(first, second)})
+    return pd.DataFrame(rows)
 
 
 def leave_one_out(likelihood: Likelihood, full: Estimate, search: Search | None = None) -> pd.DataFrame:
@@ -103,21 +105,3 @@ def leave_one_out(likelihood: Likelihood, full: Estimate, search: Search | None 
             }
         )
     return pd.DataFrame(rows)
-
-
-_ESTIMATE_COLUMNS = (
-    "n_observations",
-    "observations",
-    *POSE_COLUMNS,
-    *SIGMA_COLUMNS,
-    "neg_log_likelihood",
-    "n_evaluations",
-)
-SPLIT_COLUMNS = (
-    "split",
-    *(f"{name}_{k}" for k in (1, 2) for name in _ESTIMATE_COLUMNS),
-    "distance_m",
-    "angle_rad",
-    "mahalanobis",
-    "p_value",
-)

@@ -183,3 +183,21 @@ def test_table_has_map_coordinates_and_every_observed_point(survey, camera):
     np.testing.assert_array_equal(first[["north_m", "east_m", "down_m"]].to_numpy(dtype=float), expected)
     variance = projection_covariance(survey, camera, POSE, pose_covariance(), PLANE)[0, 1, 0, 1]
     assert first["covariance_north_east_m2"] == variance
+
+
+def test_summary_separates_all_from_accepted(survey, camera):
+    """The last observation is displaced by 1 m north: only the spread of all observations knows."""
+    survey.position_m[-1, :, 0] += 1.0
+    poses = {"before": (POSE + 0.01, pose_covariance()), "after": (POSE, pose_covariance())}
+    table = mapping.mapping_table(survey, camera, poses, PLANE)
+    points = PLANE.centre_m + np.random.default_rng(1).standard_normal((12, 3))
+    summary = mapping.mapping_summary(table, PLANE, points, range(1, 12)).set_index(["pose", "observations"])
+    for name, (pose, covariance) in poses.items():
+        projected = project(survey, camera, pose, PLANE)
+        assert summary.loc[(name, "all"), "spread_mm"] == pytest.approx(spread_mm(projected), rel=1e-6)
+        assert summary.loc[(name, "accepted"), "spread_mm"] == pytest.approx(spread_mm(projected[:-1]), rel=1e-6)
+        traces = np.trace(projection_covariance(survey, camera, pose, covariance, PLANE), axis1=-2, axis2=-1)
+        assert summary.loc[(name, "all"), "sigma_mm"] == pytest.approx(1e3 * np.sqrt(traces.mean()), rel=1e-9)
+    assert summary["n_projected"].tolist() == [144, 132, 144, 132]
+    rms = 1e3 * np.sqrt(np.mean(((points - PLANE.centre_m) @ PLANE.normal) ** 2))
+    assert summary["plane_rms_mm"].to_numpy() == pytest.approx(rms)
