@@ -22,7 +22,7 @@ wildcard_constraints:
 def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
     return PROJECT.platforms[wildcards.platform].model_dump(
-        mode="json", exclude={"description", "published"}
+        mode="json", exclude={"description", "published", "outline"}
     )
 
 

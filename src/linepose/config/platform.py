@@ -8,6 +8,7 @@ import yaml
 from pydantic import Field, PositiveFloat, PositiveInt, field_validator
 
 from linepose.camera import Camera, CameraSigmas
+from linepose.config.outline import OutlineSection
 from linepose.config.schema import Section, validated
 from linepose.errors import InputError
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
@@ -91,6 +92,8 @@ class Platform(Section):
     published: Literal["ladybird", "ladybird_attitude"] | None = Field(
         None, description="The published numbers that the results are held against, if any."
     )
+
+    outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
 
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from linepose.errors import InputError
+from linepose.rotations import Floats
 
 
 def usable_rows(table: pd.DataFrame, columns: Sequence[str], name: str) -> pd.DataFrame:
@@ -31,3 +32,10 @@ def stage_row(table: pd.DataFrame, stage: str, columns: Sequence[str], name: str
     if rows.empty:
         raise InputError(name, f"no stage {stage}", "one row for it", "run its stage again")
     return usable_rows(rows, columns, name).iloc[0]
+
+
+def some_rows(values: Floats, most: int) -> Floats:
+    """At most so many rows of samples (K, ...), drawn evenly over walkers and steps, the same at every call."""
+    if len(values) <= most:
+        return np.array(values)
+    return np.array(values[np.sort(np.random.default_rng(0).choice(len(values), most, replace=False))])

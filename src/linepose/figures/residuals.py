@@ -38,7 +38,8 @@ def residuals(table: pd.DataFrame, by: str) -> Figure:
         panel.axhline(0.0, color=BLACK, linewidth=0.6)
         panel.set_ylabel(f"Error {where} the line (px)")
         panel.grid(visible=False, axis="x")
-        panel.margins(x=0.01)
+        panel.use_sticky_edges = False
+        panel.margins(x=0.01, y=0.05)
     panels[1].set_xticks(np.arange(len(groups)), groups)
     panels[1].set_xlabel(_NAMES[by])
     handles = [
@@ -54,7 +55,7 @@ def residuals_caption(table: pd.DataFrame, by: str) -> str:
     """How large the errors are beside their sigmas, and what they have in common."""
     rows = _inliers(table)
     rms = float(np.sqrt((rows["error_px"] ** 2).mean()))
-    size = f"RMS error {rms:.1f} px, where {float(np.sqrt((rows['sigma_px'] ** 2).mean())):.1f} px were expected. "
+    size = f"RMS error {rms:.1f} px, where sigmas of {float(np.sqrt((rows['sigma_px'] ** 2).mean())):.1f} px in their direction were expected. "
     if by == "observation":
         common = max(alike_in_a_view(rows, column) for column in ("error_u_px", "error_v_px"))
         return (

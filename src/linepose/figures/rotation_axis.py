@@ -10,7 +10,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 from scipy.stats import gaussian_kde
 
-from linepose.figures.checks import usable_rows
+from linepose.figures.checks import some_rows, usable_rows
 from linepose.figures.style import BLACK, ESTIMATE, GREY, HAND_MEASURED, TRUTH, WIDE_IN, blank_figure, few_ticks, styled
 from linepose.pose import POSE_COLUMNS
 from linepose.rotations import Floats
@@ -30,11 +30,11 @@ def rotation_axis(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Fig
     marks = {name: axis_and_angle(np.asarray(pose, dtype=float)[3:]) for name, pose in marked.items()}
     pole = axis.mean(axis=0) / np.linalg.norm(axis.mean(axis=0))
     tangent = _tangent(pole)
-    near = np.degrees(axis @ tangent.T)
-    thin = slice(None, None, max(1, len(axis) // _MOST_DOTS))
-    density = gaussian_kde(near[thin].T)(near[thin].T)
+    dots = some_rows(axis, _MOST_DOTS)
+    near = np.degrees(dots @ tangent.T)
+    density = gaussian_kde(near.T)(near.T)
     order = np.argsort(density)
-    dots, colours = axis[thin][order], density[order]
+    dots, near, colours = dots[order], near[order], density[order]
 
     figure = blank_figure(WIDE_IN, 4.4)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.35, 1))
@@ -48,7 +48,7 @@ def rotation_axis(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Fig
     sphere.set_title("axis in the body frame", loc="left")
 
     close = figure.add_subplot(grid[0, 1])
-    close.scatter(*near[thin][order].T, c=colours, s=3, linewidths=0, rasterized=True)
+    close.scatter(*near.T, c=colours, s=3, linewidths=0, rasterized=True)
     for name, (one, _) in marks.items():
         colour, marker = _MARKS[name]
         close.plot(*np.degrees(tangent @ one), color=colour, marker=marker, linestyle="none")
@@ -88,11 +88,12 @@ def _draw_sphere(axes: Axes3D, pole: Floats) -> None:
     )
     for direction, name in zip(np.eye(3), ("x", "y", "z"), strict=True):
         axes.plot(*np.stack([np.zeros(3), direction]).T, color=BLACK, linewidth=0.8)
-        axes.text(*(1.12 * direction), name, fontsize=7)
+        axes.text(*(1.25 * direction), name, fontsize=7, ha="center", va="center")
+    axes.plot(*np.stack([np.zeros(3), pole]).T, color=ESTIMATE, linewidth=1.0)
     axes.view_init(
-        elev=float(np.degrees(np.arcsin(pole[2]))) + 20, azim=float(np.degrees(np.arctan2(pole[1], pole[0]))) + 25
+        elev=float(np.degrees(np.arcsin(pole[2]))) + 30, azim=float(np.degrees(np.arctan2(pole[1], pole[0]))) + 40
     )
-    axes.set_box_aspect((1, 1, 1), zoom=1.25)
+    axes.set_box_aspect((1, 1, 1), zoom=1.6)
     axes.set_axis_off()
 
 
