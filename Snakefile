@@ -21,6 +21,16 @@ include: "workflow/rules/reject_outliers.smk"
 include: "workflow/rules/optimise.smk"
 include: "workflow/rules/sample.smk"
 include: "workflow/rules/diagnose.smk"
+include: "workflow/rules/uncertainty.smk"
+include: "workflow/rules/subsets.smk"
+include: "workflow/rules/repeatability.smk"
+include: "workflow/rules/splits.smk"
+include: "workflow/rules/leave_one_out.smk"
+include: "workflow/rules/basin.smk"
+include: "workflow/rules/basin_summary.smk"
+include: "workflow/rules/mapping.smk"
+include: "workflow/rules/sensitivity.smk"
+include: "workflow/rules/experiments.smk"
 include: "workflow/rules/regression.smk"
 
 
@@ -29,5 +39,6 @@ rule all:
     input:
         expand("results/{platform}/pose.parquet", platform=PLATFORMS),
         expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
+        rules.experiments.input,
         "results/regression.parquet",
         "results/logs/regression.passed",

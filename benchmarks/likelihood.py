@@ -24,7 +24,7 @@ import surveys
 
 POSE = np.array([0.189, -0.142, -0.794, -0.822, 0.738, -1.429])
 TARGETS_MS = {16: (0.045, 0.022, 0.022, 0.011), 25: (0.095, 0.046, 0.048, 0.023)}
-ROWS = 250
+ROWS = 125  # what emcee asks for at once with 250 walkers
 CHAIN = 24  # long enough to hide loads, short enough for several chains to be in flight at once
 OBSERVATIONS = (8, 16, 25, 50, 100, 200)
 POINTS = (1, 4, 16, 32, 64, 128, 200)
@@ -77,7 +77,7 @@ def single_seconds(likelihood: PublishedLikelihood, pose: np.ndarray, budget_s: 
     return least_seconds(run, max(3, int(budget_s / (calls * once)))) / calls
 
 
-def batched_seconds(likelihood: PublishedLikelihood, repetitions: int = 60) -> float:
+def batched_seconds(likelihood: PublishedLikelihood, repetitions: int = 200) -> float:
     """Least time of one evaluation within a batch on all threads."""
     poses = POSE + np.random.default_rng(0).normal(0, 1e-3, (ROWS, 6))
     likelihood.log_likelihoods(poses)

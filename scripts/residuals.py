@@ -21,4 +21,6 @@ with stage(snakemake) as log:
     write_table(residuals, snakemake.output.residuals, RESIDUALS)
     write_table(points, snakemake.output.points, ESTIMATED_POINTS)
     inliers = residuals[residuals["stage"] == "inliers"]
-    log.info("mean error of the inliers %.2f px, mean sigma %.2f px", inliers["error_px"].mean(), inliers["sigma_px"].mean())
+    log.info(
+        "mean error of the inliers %.2f px, mean sigma %.2f px", inliers["error_px"].mean(), inliers["sigma_px"].mean()
+    )

@@ -4,14 +4,17 @@ A batch's table must depend on the batch alone: then neither the number of cores
 the work was interrupted shows in the result.
 """
 
+import hashlib
+import json
 import multiprocessing
 import os
+import shutil
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numba
 import pandas as pd
@@ -47,6 +50,26 @@ def run_batches(
             workers.shutdown(cancel_futures=True)
             raise
     return pd.concat([read_table(_file(folder, name), schema) for name in names], ignore_index=True)
+
+
+def batch_ranges(count: int, size: int) -> dict[str, range]:
+    """Consecutive ranges of at most `size` that cover 0 to `count`, by a name that sorts like them."""
+    ranges = [range(first, min(first + size, count)) for first in range(0, count, size)]
+    return {f"{cells.start:06d}-{cells.stop:06d}": cells for cells in ranges}
+
+
+def inputs_digest(settings: Mapping[str, Any], files: Iterable[Path | str]) -> str:
+    """Digest of settings and of files' contents: names the folder whose batches belong to them and to nothing else."""
+    digest = hashlib.sha256(json.dumps(settings, sort_keys=True, default=str).encode())
+    for file in files:
+        for path in sorted(Path(file).rglob("*.parquet")) if Path(file).is_dir() else [Path(file)]:
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def remove_finished(folder: Path) -> None:
+    """Remove the batches of work whose result is written, and those of earlier work that was never finished."""
+    shutil.rmtree(folder.parent, ignore_errors=True)
 
 
 def _file(folder: Path, name: str) -> Path:

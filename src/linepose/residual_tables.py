@@ -51,8 +51,7 @@ def residual_tables(
                     "point": known.astype(np.int64),
                     **{name: position[:, k] for k, name in enumerate(POSITION_COLUMNS)},
                     **{
-                        name: covariance[:, i, j]
-                        for name, (i, j) in zip(POINT_COVARIANCE_COLUMNS, _UPPER, strict=True)
+                        name: covariance[:, i, j] for name, (i, j) in zip(POINT_COVARIANCE_COLUMNS, _UPPER, strict=True)
                     },
                 }
             )

@@ -11,7 +11,7 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 
-from linepose.batches import run_batches
+from linepose.batches import batch_ranges, inputs_digest, remove_finished, run_batches
 from linepose.errors import InputError
 
 SCHEMA = pa.schema([pa.field("batch", pa.string(), nullable=False), pa.field("value", pa.float64(), nullable=False)])
@@ -89,3 +89,30 @@ def test_killed_run_leaves_no_process_behind_and_goes_on_where_it_was(tmp_path):
         assert (tmp_path / "killed" / name).stat().st_mtime_ns == modified
     for path in (tmp_path / "whole").iterdir():
         assert (tmp_path / "killed" / path.name).read_bytes() == path.read_bytes()
+
+
+@pytest.mark.parametrize("size", [1, 7, 30, 100])
+def test_ranges_cover_all_once_in_the_order_of_their_names(size):
+    ranges = batch_ranges(30, size)
+    assert [cell for cells in ranges.values() for cell in cells] == list(range(30))
+    assert list(ranges) == sorted(ranges)
+    assert all(len(cells) <= size for cells in ranges.values())
+
+
+def test_digest_tells_settings_and_contents_apart(tmp_path):
+    (tmp_path / "mcmc").mkdir()
+    (tmp_path / "mcmc" / "a.parquet").write_bytes(b"1")
+    (tmp_path / "b").write_bytes(b"2")
+    files = [tmp_path / "mcmc", tmp_path / "b"]
+    first = inputs_digest({"seed": 1, "grid": {"n": 3}}, files)
+    assert inputs_digest({"grid": {"n": 3}, "seed": 1}, files) == first
+    assert inputs_digest({"seed": 2, "grid": {"n": 3}}, files) != first
+    (tmp_path / "mcmc" / "a.parquet").write_bytes(b"3")
+    assert inputs_digest({"seed": 1, "grid": {"n": 3}}, files) != first
+
+
+def test_finished_and_outdated_work_is_removed(tmp_path):
+    for digest in ("new", "old"):
+        run_batches(table, NAMES[:1], tmp_path / "basin" / digest, SCHEMA, 1)
+    remove_finished(tmp_path / "basin" / "new")
+    assert not (tmp_path / "basin").exists()

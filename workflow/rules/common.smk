@@ -12,7 +12,7 @@ except LineposeError as error:
     raise WorkflowError(str(error)) from None
 
 STUDY = PROJECT.study
-PLATFORMS = list(PROJECT.platforms)
+PLATFORMS = STUDY.platforms
 
 
 wildcard_constraints:
@@ -22,8 +22,21 @@ wildcard_constraints:
 def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
     return PROJECT.platforms[wildcards.platform].model_dump(
-        mode="json", exclude={"description", "published", "outline"}
+        mode="json",
+        exclude={"description", "published", "experiments", "outline"},
     )
+
+
+def experiment(key):
+    """What the platform's file says of one experiment, as a rule's parameter."""
+    return lambda wildcards: PROJECT.platforms[
+        wildcards.platform
+    ].experiments.model_dump(mode="json")[key]
+
+
+def platform_file(wildcards):
+    """The platform's file, for messages."""
+    return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
 
 
 def section(key):

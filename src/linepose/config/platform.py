@@ -8,6 +8,7 @@ import yaml
 from pydantic import Field, PositiveFloat, PositiveInt, field_validator
 
 from linepose.camera import Camera, CameraSigmas
+from linepose.config.experiments import ExperimentsSection
 from linepose.config.outline import OutlineSection
 from linepose.config.schema import Section, validated
 from linepose.errors import InputError
@@ -94,6 +95,9 @@ class Platform(Section):
     )
 
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
+    experiments: ExperimentsSection = Field(
+        ExperimentsSection(), description="Experiments on the accepted observations."
+    )
 
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""

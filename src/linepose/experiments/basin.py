@@ -5,7 +5,7 @@ random direction and the cell's angle about a random axis.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
@@ -16,7 +16,7 @@ from linepose.distance import mahalanobis_distance
 from linepose.errors import InputError
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Search
-from linepose.optimisers import Optimiser
+from linepose.optimisers import optimiser
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.rotations import Floats, matrix_from_rotation_vector, rotation_vector_from_matrix
 
@@ -77,42 +77,44 @@ def start_pose(grid: BasinGrid, reference: ArrayLike, seed: int, cell: int) -> F
     return np.concatenate([pose[:3] + distance_m * direction, rotation_vector_from_matrix(turned)])
 
 
-def attempt(
-    likelihood: Likelihood,
-    reference: ArrayLike,
-    covariance: ArrayLike,
-    grid: BasinGrid,
-    seed: int,
-    cell: int,
-    optimiser: Optimiser,
-    search: Search,
-    threshold: float,
-) -> dict[str, object]:
-    """One row of the sweep: a cell's start, where the search from it ended, and whether that is the reference.
+@dataclass(frozen=True)
+class Sweep:
+    """A search from every cell: by which likelihood, around which reference pose (6,) with its covariance (6, 6).
 
-    Success is a Mahalanobis distance below the threshold, by the reference's covariance (6, 6).
+    Success is a Mahalanobis distance to the reference below the threshold.
     """
-    distance_m, angle_rad = grid.offset(cell)
-    start = start_pose(grid, reference, seed, cell)
-    found = optimiser(likelihood, start, search)
-    pose = found.parameters[:N_PARAMETERS]
-    mahalanobis = float(mahalanobis_distance(pose, np.asarray(reference)[:N_PARAMETERS], covariance))
-    return {
-        "cell": cell,
-        "distance_m": distance_m,
-        "angle_rad": angle_rad,
-        **dict(zip(START_COLUMNS, start, strict=True)),
-        **dict(zip(POSE_COLUMNS, pose, strict=True)),
-        "neg_log_likelihood": found.neg_log_likelihood,
-        "n_evaluations": found.n_evaluations,
-        "mahalanobis": mahalanobis,
-        "success": mahalanobis < threshold,
-    }
 
+    likelihood: Likelihood
+    reference: Floats
+    covariance: Floats
+    grid: BasinGrid
+    seed: int
+    search: Search = field(default_factory=Search)
+    threshold: float = 0.1
 
-def batches(n_cells: int, size: int) -> Iterable[range]:
-    """Consecutive ranges of at most `size` cells that cover all."""
-    return [range(first, min(first + size, n_cells)) for first in range(0, n_cells, size)]
+    def attempt(self, optimiser_name: str, cell: int) -> dict[str, object]:
+        """One row: a cell's start, where the search from it ended, and whether that is the reference."""
+        distance_m, angle_rad = self.grid.offset(cell)
+        start = start_pose(self.grid, self.reference, self.seed, cell)
+        found = optimiser(optimiser_name)(self.likelihood, start, self.search)
+        pose = found.parameters[:N_PARAMETERS]
+        mahalanobis = float(mahalanobis_distance(pose, self.reference, self.covariance))
+        return {
+            "optimiser": optimiser_name,
+            "cell": cell,
+            "distance_m": distance_m,
+            "angle_rad": angle_rad,
+            **dict(zip(START_COLUMNS, start, strict=True)),
+            **dict(zip(POSE_COLUMNS, pose, strict=True)),
+            "neg_log_likelihood": found.neg_log_likelihood,
+            "n_evaluations": found.n_evaluations,
+            "mahalanobis": mahalanobis,
+            "success": mahalanobis < self.threshold,
+        }
+
+    def rows(self, optimiser_name: str, cells: Iterable[int]) -> pd.DataFrame:
+        """One row a cell; each depends on its cell alone, not on which others are swept with it."""
+        return pd.DataFrame([self.attempt(optimiser_name, cell) for cell in cells])
 
 
 def summarise(sweep: pd.DataFrame, region: Region) -> pd.DataFrame:

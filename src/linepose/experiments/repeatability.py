@@ -4,7 +4,7 @@ Beyond the paper, which compares two subsets by eye: the distance of the two pos
 same over many random splits, and what each single observation does to the pose.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -18,9 +18,15 @@ from linepose.distance import (
     p_value,
 )
 from linepose.errors import InputError
-from linepose.experiments.estimate import Estimate, estimate_by_curvature, observation_list
+from linepose.experiments.estimate import (
+    Estimate,
+    estimate_by_curvature,
+    estimate_by_sampling,
+    observation_list,
+)
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Search
+from linepose.sampling import SamplingSettings
 
 
 def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> None:
@@ -47,6 +53,30 @@ def consistency(first: Estimate, second: Estimate) -> dict[str, float]:
         "mahalanobis": distance,
         "p_value": float(p_value(distance)),
     }
+
+
+def compare_subsets(
+    likelihood: Likelihood,
+    subsets: Mapping[str, Sequence[int]],
+    start: ArrayLike,
+    seed: int,
+    place: str,
+    search: Search | None = None,
+    settings: SamplingSettings | None = None,
+) -> pd.DataFrame:
+    """One row for each of two named subsets, with sampled sigmas; both tell how far apart the two are; start (6,).
+
+    Raises InputError, naming `place`, for subsets that overlap.
+    """
+    first, second = subsets.values()
+    check_disjoint(first, second, place)
+    estimates = [
+        estimate_by_sampling(likelihood.select(list(numbers)), start, seed, search, settings)
+        for numbers in (first, second)
+    ]
+    agreement = consistency(*estimates)
+    rows = [{"subset": name, **estimate.row(), **agreement} for name, estimate in zip(subsets, estimates, strict=True)]
+    return pd.DataFrame(rows)
 
 
 def split_numbers(numbers: ArrayLike, size: int, seed: int, index: int) -> tuple[list[int], list[int]]:
@@ -88,20 +118,25 @@ def random_splits(
     return pd.DataFrame(rows)
 
 
-def leave_one_out(likelihood: Likelihood, full: Estimate, search: Search | None = None) -> pd.DataFrame:
-    """One row an observation: the pose without it, and its influence, the distance from the full estimate in sigmas."""
+def leave_one_out(
+    likelihood: Likelihood, pose: ArrayLike, covariance: ArrayLike, search: Search | None = None
+) -> pd.DataFrame:
+    """One row an observation: the pose without it, and its influence, how far that lies from the full estimate.
+
+    The influence is a distance in sigmas of the full estimate, a pose (6,) with its covariance (6, 6).
+    """
     rows = []
-    numbers = full.number.tolist()
+    numbers = likelihood.survey.number.tolist()
     for number in numbers:
         rest = likelihood.select([other for other in numbers if other != number])
-        without = estimate_by_curvature(rest, full.pose, search)
+        without = estimate_by_curvature(rest, pose, search)
         rows.append(
             {
                 "left_out": number,
-                **{name: value for name, value in without.row().items() if name != "observations"},
-                "distance_m": float(euclidean_distance_m(without.pose, full.pose)),
-                "angle_rad": float(geodesic_angle_rad(without.pose, full.pose)),
-                "influence": float(mahalanobis_distance(without.pose, full.pose, full.covariance)),
+                **without.row(),
+                "distance_m": float(euclidean_distance_m(without.pose, pose)),
+                "angle_rad": float(geodesic_angle_rad(without.pose, pose)),
+                "influence": float(mahalanobis_distance(without.pose, pose, covariance)),
             }
         )
     return pd.DataFrame(rows)

@@ -3,7 +3,7 @@
 The sigmas are the curvature's: a sampled one carries the chain's noise, which is larger than most of the changes.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pandas as pd
@@ -35,15 +35,15 @@ def camera_changes(camera: Camera) -> dict[str, Camera]:
 
 def sensitivity(
     nominal: Likelihood,
-    changes: Mapping[str, Callable[[], Likelihood]],
+    changes: Mapping[str, Likelihood],
     start: ArrayLike,
     search: Search | None = None,
 ) -> pd.DataFrame:
     """One row a change, the unchanged first: pose, sigma, and how far it moved from the unchanged; start pose (6,)."""
     reference = estimate_by_curvature(nominal, start, search)
     rows = []
-    for name, likelihood in {NOMINAL: lambda: nominal, **changes}.items():
-        changed = reference if name == NOMINAL else estimate_by_curvature(likelihood(), start, search)
+    for name, likelihood in {NOMINAL: nominal, **changes}.items():
+        changed = reference if name == NOMINAL else estimate_by_curvature(likelihood, start, search)
         rows.append(
             {
                 "change": name,

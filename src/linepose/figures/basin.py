@@ -50,7 +50,9 @@ def basin(sweep: pd.DataFrame, region: Region) -> Figure:
     return figure
 
 
-def _edges(centres: Sequence[float] | np.ndarray[tuple[int], np.dtype[np.float64]]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _edges(
+    centres: Sequence[float] | np.ndarray[tuple[int], np.dtype[np.float64]],
+) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     middle = np.asarray(centres, dtype=float)
     return np.concatenate([[0.0], (middle[:-1] + middle[1:]) / 2, [middle[-1] + middle[0]]])
 

@@ -13,7 +13,9 @@ def usable_rows(table: pd.DataFrame, columns: Sequence[str], name: str) -> pd.Da
     """The table, where it has rows and these columns and every number in them is finite; raises InputError otherwise."""
     missing = [column for column in columns if column not in table.columns]
     if missing:
-        raise InputError(name, f"no column {', '.join(missing)}", f"columns {', '.join(columns)}", "run its stage again")
+        raise InputError(
+            name, f"no column {', '.join(missing)}", f"columns {', '.join(columns)}", "run its stage again"
+        )
     if table.empty:
         raise InputError(name, "no rows", "at least one", "run its stage again")
     for column in columns:

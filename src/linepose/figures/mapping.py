@@ -31,7 +31,10 @@ def mapping(mapped: pd.DataFrame, estimated: pd.DataFrame, observations: pd.Data
     before, after = (_poses(mapped, name) for name in ("hand_measured", "calibrated"))
     figure = blank_figure(HALF_PAGE_IN, 2 * HALF_PAGE_IN * _PANEL_ASPECT + 0.5)
     upper, lower = figure.subplots(2, 1)
-    for table, colour, size, label in ((before, GREY, 3, "before: hand measured"), (after, RED, 3, "after: calibrated")):
+    for table, colour, size, label in (
+        (before, GREY, 3, "before: hand measured"),
+        (after, RED, 3, "after: calibrated"),
+    ):
         flat = view.flat(table[list(PROJECTED_COLUMNS)])
         upper.scatter(*flat.T, s=size, color=colour, linewidths=0, label=label)
     upper.plot(*points.T, "+", color=GREEN, markersize=7, markeredgewidth=1.3, label="estimated points")

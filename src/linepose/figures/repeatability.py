@@ -17,7 +17,11 @@ def repeatability(splits: pd.DataFrame, pair: pd.DataFrame | None = None) -> Fig
     `splits` as in `experiment_schemas.SPLITS`; `pair` as in `REPEATABILITY` adds the distance of two named subsets.
     """
     distance = _distances(splits)
-    named = None if pair is None else float(usable_rows(pair, ["mahalanobis"], "repeatability.parquet")["mahalanobis"].iloc[0])
+    named = (
+        None
+        if pair is None
+        else float(usable_rows(pair, ["mahalanobis"], "repeatability.parquet")["mahalanobis"].iloc[0])
+    )
     most = 1.05 * max(float(distance.max()), 5.0, named or 0.0)
     figure = blank_figure(HALF_PAGE_IN, 2.7)
     axes = figure.add_subplot()

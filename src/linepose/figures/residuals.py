@@ -59,7 +59,9 @@ def residuals_caption(table: pd.DataFrame, by: str) -> str:
     if by == "observation":
         common = max(alike_in_a_view(rows, column) for column in ("error_u_px", "error_v_px"))
         return (
-            "Observed minus reprojected position by observation. " + size + f"Up to {100 * max(common, 0):.0f} % of the "
+            "Observed minus reprojected position by observation. "
+            + size
+            + f"Up to {100 * max(common, 0):.0f} % of the "
             "variance is common to all points of a view, where the published noise model takes them as independent."
         )
     means = rows.groupby(by)[["error_u_px", "error_v_px"]].mean().abs().max(axis=1)

@@ -83,9 +83,7 @@ def _tangent(pole: Floats) -> Floats:
 
 def _draw_sphere(axes: Axes3D, pole: Floats) -> None:
     u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 25), np.linspace(0, np.pi, 13))
-    axes.plot_wireframe(
-        np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v), color=GREY, linewidth=0.25, alpha=0.6
-    )
+    axes.plot_wireframe(np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v), color=GREY, linewidth=0.25, alpha=0.6)
     for direction, name in zip(np.eye(3), ("x", "y", "z"), strict=True):
         axes.plot(*np.stack([np.zeros(3), direction]).T, color=BLACK, linewidth=0.8)
         axes.text(*(1.25 * direction), name, fontsize=7, ha="center", va="center")

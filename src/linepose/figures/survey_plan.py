@@ -84,9 +84,7 @@ def label_places(plan: Floats) -> Floats:
         distance = np.linalg.norm(between, axis=-1)
         overlap = np.where(distance > 0, np.maximum(clear - distance, 0.0), 0.0)
         push = (overlap / np.maximum(distance, 1e-9))[..., None] * between
-        home = plan + near * (places - plan) / np.maximum(
-            np.linalg.norm(places - plan, axis=1, keepdims=True), 1e-9
-        )
+        home = plan + near * (places - plan) / np.maximum(np.linalg.norm(places - plan, axis=1, keepdims=True), 1e-9)
         places = places + 0.5 * push.sum(axis=1) + 0.1 * (home - places)
     return places
 

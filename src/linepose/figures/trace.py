@@ -11,7 +11,19 @@ from numpy.typing import ArrayLike
 from linepose.diagnostics import MINIMUM_STEPS_PER_TIME
 from linepose.figures.checks import usable_rows
 from linepose.figures.corner_plot import LABELS
-from linepose.figures.style import BLACK, BLUE, GREEN, GREY, HALF_PAGE_IN, ORANGE, PURPLE, RED, SKY, blank_figure, styled
+from linepose.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    HALF_PAGE_IN,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    blank_figure,
+    styled,
+)
 from linepose.pose import POSE_COLUMNS
 from linepose.rotations import Floats
 from linepose.stages import samples_from_table

@@ -7,9 +7,9 @@ from numba import njit
 
 # Fusing a product with a sum is all that may be done to the arithmetic: NaN and infinity keep their meaning, and every
 # compilation gives the same bits. (Allowed to reorder sums, LLVM orders them differently from process to process.)
-FAST_ARITHMETIC: Final = {"contract"}
+FUSED_ARITHMETIC: Final = {"contract"}
 
 
 def part(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a part of the kernel; only what calls the parts is cached on disk, see kernel.py."""
-    return njit(error_model="numpy", fastmath=FAST_ARITHMETIC)(function)
+    return njit(error_model="numpy", fastmath=FUSED_ARITHMETIC)(function)

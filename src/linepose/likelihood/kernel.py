@@ -11,7 +11,7 @@ from numba import config as numba_config
 from numba import get_thread_id, njit, prange  # type: ignore[attr-defined]
 
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import FAST_ARITHMETIC, part
+from linepose.likelihood.compiling import FUSED_ARITHMETIC, part
 from linepose.likelihood.estimate import gather, solve
 from linepose.likelihood.layout import LANES
 from linepose.likelihood.pairs import intersect
@@ -77,12 +77,12 @@ def _digest() -> str:
 def _compiled(sources: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The two entry points. `sources` becomes part of the key of the cache on disk, which else knows this file only."""
 
-    @njit(cache=True, error_model="numpy", fastmath=FAST_ARITHMETIC)
+    @njit(cache=True, error_model="numpy", fastmath=FUSED_ARITHMETIC)
     def evaluate(survey, pose, rays, sums, points, residuals, most_behind):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
         _ = sources
         return _evaluate(survey, pose, rays[0], sums[0], points[0], residuals[0], most_behind)
 
-    @njit(cache=True, parallel=True, error_model="numpy", fastmath=FAST_ARITHMETIC)
+    @njit(cache=True, parallel=True, error_model="numpy", fastmath=FUSED_ARITHMETIC)
     def evaluate_rows(survey, poses, rays, sums, points, residuals, most_behind, out):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
         _ = sources
         for row in prange(poses.shape[0]):

@@ -7,9 +7,9 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import kstest
 
 from linepose.errors import InputError
-from linepose.experiments.basin import BasinGrid, Region, attempt, batches, start_pose, summarise, wilson_interval
-from linepose.optimise import Optimum, Search
-from linepose.optimisers import optimiser
+from linepose.experiments.basin import BasinGrid, Region, Sweep, start_pose, summarise, wilson_interval
+from linepose.optimise import Optimum
+from linepose.optimisers import OPTIMISERS
 
 from .conftest import SIGMA, TRUE_POSE
 
@@ -63,38 +63,32 @@ def test_grid_of_no_size_is_refused(settings, key):
         BasinGrid(**settings)
 
 
-@pytest.mark.parametrize("size", [1, 7, 30, 100])
-def test_batches_cover_each_cell_once(size):
-    found = batches(30, size)
-    assert [cell for batch in found for cell in batch] == list(range(30))
-    assert all(len(batch) <= size for batch in found)
-
-
 @pytest.mark.parametrize("model", ["gaussian", "gaussian_11"])
 def test_sweep_finds_the_only_optimum_of_a_quadratic(model, request):
     likelihood = request.getfixturevalue(model)
-    reference = likelihood.means.mean(axis=0)
+    reference = likelihood.means.mean(axis=0)[:6]
     covariance = np.linalg.inv(likelihood.information)[:6, :6] / 12
-    row = attempt(likelihood, reference, covariance, GRID, 1, 17, optimiser("powell"), Search(), 0.1)
+    row = Sweep(likelihood, reference, covariance, GRID, 1).attempt("powell", 17)
     assert row["success"]
     assert row["mahalanobis"] < 0.01
-    np.testing.assert_array_equal(
-        [row[f"start_{c}"] for c in ("r_x_m", "theta_z_rad")], start_pose(GRID, reference, 1, 17)[[0, 5]]
-    )
+    start = [row["start_r_x_m"], row["start_theta_z_rad"]]
+    np.testing.assert_array_equal(start, start_pose(GRID, reference, 1, 17)[[0, 5]])
 
 
-def test_success_ends_at_the_threshold(gaussian):
+@pytest.mark.parametrize(("share", "success"), [(0.05, True), (0.2, False)])
+def test_success_ends_at_the_threshold(gaussian, monkeypatch, share, success):
     """An optimiser that stops 0.05 and 0.2 sigmas from the reference."""
-    covariance = np.diag(SIGMA**2)
+    end = TRUE_POSE + share * SIGMA * np.eye(6)[1]
+    monkeypatch.setitem(OPTIMISERS, "stops", lambda *_: Optimum(end, 0.0, 1, True))
+    row = Sweep(gaussian, TRUE_POSE, np.diag(SIGMA**2), GRID, 1).attempt("stops", 0)
+    assert row["success"] is success
+    assert row["mahalanobis"] == pytest.approx(share, rel=1e-9)
 
-    def stops(share):
-        return lambda likelihood, start, search: Optimum(TRUE_POSE + share * SIGMA * np.eye(6)[1], 0.0, 1, True)
 
-    near, far = (
-        attempt(gaussian, TRUE_POSE, covariance, GRID, 1, 0, stops(share), Search(), 0.1) for share in (0.05, 0.2)
-    )
-    assert (near["success"], far["success"]) == (True, False)
-    assert near["mahalanobis"] == pytest.approx(0.05, rel=1e-9)
+def test_rows_do_not_depend_on_what_is_swept_with_them(gaussian):
+    sweep = Sweep(gaussian, TRUE_POSE, np.diag(SIGMA**2), GRID, 1)
+    together = sweep.rows("powell", range(3, 7))
+    assert sweep.rows("powell", [5]).equals(together.iloc[[2]].reset_index(drop=True))
 
 
 def test_summary_counts_the_triangle():

@@ -91,7 +91,7 @@ def test_split_that_leaves_a_direction_open_has_a_pose_but_no_distance(gaussian)
 def test_leaving_one_out_moves_the_mean_by_its_share(gaussian):
     """Without observation k the mean moves by (mean - m_k) / (n - 1)."""
     full = estimate_by_curvature(gaussian, TRUE_POSE)
-    table = leave_one_out(gaussian, full)
+    table = leave_one_out(gaussian, full.pose, full.covariance)
     mean = gaussian.means.mean(axis=0)
     expected = mean + (mean - gaussian.means) / (len(gaussian.means) - 1)
     np.testing.assert_allclose((table[list(POSE_COLUMNS)].to_numpy() - expected) / SIGMA, 0, atol=2e-3)
