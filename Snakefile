@@ -21,6 +21,7 @@ include: "workflow/rules/reject_outliers.smk"
 include: "workflow/rules/optimise.smk"
 include: "workflow/rules/sample.smk"
 include: "workflow/rules/diagnose.smk"
+include: "workflow/rules/residuals.smk"
 include: "workflow/rules/uncertainty.smk"
 include: "workflow/rules/subsets.smk"
 include: "workflow/rules/repeatability.smk"
@@ -31,6 +32,7 @@ include: "workflow/rules/basin_summary.smk"
 include: "workflow/rules/mapping.smk"
 include: "workflow/rules/sensitivity.smk"
 include: "workflow/rules/experiments.smk"
+include: "workflow/rules/figures.smk"
 include: "workflow/rules/regression.smk"
 
 
@@ -40,5 +42,6 @@ rule all:
         expand("results/{platform}/pose.parquet", platform=PLATFORMS),
         expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
         rules.experiments.input,
+        expand("results/{platform}/figures", platform=PLATFORMS),
         "results/regression.parquet",
         "results/logs/regression.passed",

@@ -92,6 +92,7 @@ RESIDUALS: Final = pa.schema(
 ESTIMATED_POINTS: Final = pa.schema(
     [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS, *POINT_COVARIANCE_COLUMNS)]
 )
+FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
 NAVIGATION_SIGMA: Final = pa.schema(floats(*navigation.SIGMA_COLUMNS))
 REGRESSION: Final = pa.schema(
     [

@@ -32,7 +32,7 @@ def basin(sweep: pd.DataFrame, region: Region) -> Figure:
     panels = np.atleast_1d(figure.subplots(len(optimisers), 1, sharex=True))
     for panel, optimiser in zip(panels, optimisers, strict=True):
         part = rows[rows["optimiser"] == optimiser]
-        grid = part.pivot(index="angle_rad", columns="distance_m", values="success").astype(float)
+        grid = part.astype({"success": float}).pivot_table(index="angle_rad", columns="distance_m", values="success")
         distance, angle = _edges(grid.columns.to_numpy()), np.degrees(_edges(grid.index.to_numpy()))
         panel.grid(visible=False)
         panel.pcolormesh(distance, angle, grid.to_numpy(), cmap=ListedColormap([_FAILED, BLUE]), vmin=0, vmax=1)
@@ -70,7 +70,7 @@ def basin_caption(summary: pd.DataFrame, region: Region) -> str:
         )
         parts.append(f"{_NAMES.get(str(optimiser), optimiser)}: {told}")
     return (
-        "Starts by their distance and angle from the optimum, one a cell, and whether the search ended there. Inside and "
-        f"outside the claimed triangle below {region.distance_m:g} m and {np.degrees(region.angle_rad):.0f}°, with 95 % "
-        f"intervals: {'; '.join(parts)}."
+        "Starts by their distance and angle from the optimum, one a cell, and whether the search ended there. "
+        f"Successes inside and outside the claimed triangle below {region.distance_m:g} m and "
+        f"{np.degrees(region.angle_rad):.0f}°, with 95 % intervals: {'; '.join(parts)}."
     )

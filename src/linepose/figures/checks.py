@@ -10,7 +10,7 @@ from linepose.rotations import Floats
 
 
 def usable_rows(table: pd.DataFrame, columns: Sequence[str], name: str) -> pd.DataFrame:
-    """The table, where it has rows and these columns and every number in them is finite; raises InputError otherwise."""
+    """The table itself; raises InputError where it has no rows, lacks a column, or a number in these is not finite."""
     missing = [column for column in columns if column not in table.columns]
     if missing:
         raise InputError(

@@ -22,7 +22,7 @@ _MARGIN_SHARE = 0.08
 
 @styled
 def mapping(mapped: pd.DataFrame, estimated: pd.DataFrame, observations: pd.DataFrame, example: int) -> Figure:
-    """Above all projections before (grey) and after (red) with the estimates; below one observation with 1-sigma ellipses.
+    """Above all projections before (grey) and after (red) and the estimates; below one observation, 1-sigma ellipses.
 
     `mapped` as in `experiment_schemas.MAPPING`, `estimated` as in `result_schemas.ESTIMATED_POINTS`, `observations` as
     in `OBSERVATIONS` says where the viewer stands.
@@ -36,13 +36,13 @@ def mapping(mapped: pd.DataFrame, estimated: pd.DataFrame, observations: pd.Data
         (after, RED, 3, "after: calibrated"),
     ):
         flat = view.flat(table[list(PROJECTED_COLUMNS)])
-        upper.scatter(*flat.T, s=size, color=colour, linewidths=0, label=label)
+        upper.scatter(flat[:, 0], flat[:, 1], s=size, color=colour, linewidths=0, label=label)
     upper.plot(*points.T, "+", color=GREEN, markersize=7, markeredgewidth=1.3, label="estimated points")
     upper.set_title("all observations", loc="left")
     one = after[after["observation"] == example]
     for centre, covariance in zip(view.flat(one[list(PROJECTED_COLUMNS)]), _covariances(one, view), strict=True):
         lower.add_patch(_ellipse(centre, covariance))
-    lower.scatter(*view.flat(one[list(PROJECTED_COLUMNS)]).T, s=6, color=RED, linewidths=0)
+    lower.plot(*view.flat(one[list(PROJECTED_COLUMNS)]).T, ".", color=RED, markersize=4)
     lower.plot(*points.T, "+", color=GREEN, markersize=7, markeredgewidth=1.3)
     lower.set_title(f"observation {example}, 1-sigma ellipses", loc="left")
     extents = [view.flat(table[list(PROJECTED_COLUMNS)]) for table in (before, after)]
@@ -62,8 +62,10 @@ def angle_error(mapped: pd.DataFrame, estimated: pd.DataFrame, observations: pd.
     figure = blank_figure(HALF_PAGE_IN, HALF_PAGE_IN * _PANEL_ASPECT + 0.5)
     axes = figure.add_subplot()
     flat = [view.flat(table[list(PROJECTED_COLUMNS)]) for table in (turned, after)]
-    axes.scatter(*flat[0].T, s=3, color=GREY, linewidths=0, label=f"turned by {angle_deg:g}° about each axis")
-    axes.scatter(*flat[1].T, s=3, color=RED, linewidths=0, label="calibrated")
+    axes.scatter(
+        flat[0][:, 0], flat[0][:, 1], s=3, color=GREY, linewidths=0, label=f"turned by {angle_deg:g}° about each axis"
+    )
+    axes.scatter(flat[1][:, 0], flat[1][:, 1], s=3, color=RED, linewidths=0, label="calibrated")
     axes.plot(
         *points.T, "+", color=GREEN, markersize=7, markeredgewidth=1.3, linestyle="none", label="estimated points"
     )
@@ -77,10 +79,10 @@ def mapping_caption(summary: pd.DataFrame, example: int) -> str:
     before, after = (_spread_mm(summary, pose, "all") for pose in ("hand_measured", "calibrated"))
     accepted = _spread_mm(summary, "calibrated", "accepted")
     return (
-        "The pattern's points, projected to its plane from every observation with the hand-measured (grey) and with the "
-        f"calibrated pose (red). The projections of one point scatter by {before:.0f} mm before and {after:.0f} mm after "
-        f"(RMS over all observations; {accepted:.0f} mm over the accepted ones). Below, observation {example} alone with "
-        "the 1-sigma ellipses that follow from pose, navigation and pixel errors."
+        "The pattern's points, projected to its plane from every observation with the hand-measured (grey) and with "
+        f"the calibrated pose (red). The projections of one point scatter by {before:.0f} mm before and {after:.0f} mm "
+        f"after (RMS over all observations; {accepted:.0f} mm over the accepted ones). Below, observation {example} "
+        "alone with the 1-sigma ellipses that follow from pose, navigation and pixel errors."
     )
 
 

@@ -17,12 +17,14 @@ _LEAST_PX = 0.1
 
 @styled
 def outlier_matrix(outliers: pd.DataFrame) -> Figure:
-    """Cells coloured by mean reprojection error, white once removed, a cross where removed next, the accepted row framed.
+    """Cells coloured by mean reprojection error, crossed where removed next, then white; the accepted row framed.
 
     `outliers` as in `result_schemas.OUTLIERS`.
     """
     table = usable_rows(outliers, _COLUMNS, "outliers.parquet")
-    errors = table.pivot(index="n_observations", columns="observation", values="error_px").sort_index(ascending=False)
+    errors = table.pivot_table(index="n_observations", columns="observation", values="error_px").sort_index(
+        ascending=False
+    )
     sizes, numbers = errors.index.to_numpy(), errors.columns.to_numpy()
     figure = blank_figure(WIDE_IN, 1.3 + 0.16 * len(sizes))
     axes = figure.add_subplot()
@@ -70,6 +72,6 @@ def outlier_matrix_caption(outliers: pd.DataFrame, threshold_px: float) -> str:
     removed = f"Removed in this order: {', '.join(map(str, order))}." if order else "None was removed."
     return (
         f"Mean reprojection error of each observation (column) at each stage (row) of the outlier removal. {removed} "
-        f"The framed row is the first in which every error is below {threshold_px:g} px: {len(accepted)} of {len(first)} "
-        f"observations remain, the worst at {accepted['error_px'].max():.1f} px."
+        f"The framed row is the first in which every error is below {threshold_px:g} px: {len(accepted)} of "
+        f"{len(first)} observations remain, the worst at {accepted['error_px'].max():.1f} px."
     )

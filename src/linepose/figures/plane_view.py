@@ -32,7 +32,7 @@ class PlaneView:
 
 
 def plane_view(plane: Plane, viewer_m: ArrayLike) -> PlaneView:
-    """The natural view of a plane: a map, north up, of one that lies; a front view from `viewer_m` (3,) of one that stands."""
+    """The natural view: a map, north up, of a plane that lies; as seen from `viewer_m` (3,) of one that stands."""
     if abs(plane.normal[2]) >= _UPRIGHT:
         return PlaneView(
             plane.centre_m, np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]), ("East (m)", "North (m)")

@@ -40,12 +40,12 @@ def platform_sketch(samples: pd.DataFrame, outline: OutlineSection, marked: Mapp
         (panels[1], 1, outline.front, "Right (m)", "front"),
     ):
         _draw_outline(panel, view)
-        panel.add_collection(LineCollection(_optical_axes(thin, axis), colors=BLUE, alpha=0.05, linewidths=1.0))
+        panel.add_collection(LineCollection(list(_optical_axes(thin, axis)), colors=BLUE, alpha=0.05, linewidths=1.0))
         panel.hist2d(chain[:, axis], -chain[:, 2], bins=_BINS, cmap=_DENSITY, zorder=3)
         for name, pose in marked.items():
             one = np.asarray(pose, dtype=float)
             colour, marker = _MARKS[name]
-            panel.add_collection(LineCollection(_optical_axes(one[None], axis), colors=colour, linewidths=1.0))
+            panel.add_collection(LineCollection(list(_optical_axes(one[None], axis)), colors=colour, linewidths=1.0))
             panel.plot(one[axis], -one[2], marker=marker, color=colour, markersize=3, zorder=4)
         panel.set_aspect("equal", adjustable="datalim")
         panel.autoscale_view()
@@ -78,7 +78,7 @@ def platform_sketch_caption(samples: pd.DataFrame) -> str:
     """How large the cloud of camera positions is, and that the outline is a sketch."""
     sigma_mm = 1e3 * samples[list(POSE_COLUMNS[:3])].std().to_numpy()
     return (
-        "The sampled camera positions (shaded) and optical axes (lines) on the platform, seen from the side and from the "
-        f"front. The positions scatter by {sigma_mm[0]:.0f} mm forward, {sigma_mm[1]:.0f} mm to the right and "
+        "The sampled camera positions (shaded) and optical axes (lines) on the platform, seen from the side and from "
+        f"the front. The positions scatter by {sigma_mm[0]:.0f} mm forward, {sigma_mm[1]:.0f} mm to the right and "
         f"{sigma_mm[2]:.0f} mm down. The outline is a sketch for orientation, not to the millimetre."
     )

@@ -25,7 +25,13 @@ def repeatability(splits: pd.DataFrame, pair: pd.DataFrame | None = None) -> Fig
     most = 1.05 * max(float(distance.max()), 5.0, named or 0.0)
     figure = blank_figure(HALF_PAGE_IN, 2.7)
     axes = figure.add_subplot()
-    axes.hist(distance, bins=np.linspace(0, most, 31), density=True, color=GREY, label=f"{len(distance)} random splits")
+    axes.hist(
+        distance,
+        bins=np.linspace(0, most, 31).tolist(),
+        density=True,
+        color=GREY,
+        label=f"{len(distance)} random splits",
+    )
     shown = np.linspace(0, most, 200)
     axes.plot(shown, chi.pdf(shown, N_PARAMETERS), color=BLUE, label="if the sigmas are right")
     axes.axvline(float(np.median(distance)), color=BLACK, linestyle="--", linewidth=0.9, label="median of the splits")

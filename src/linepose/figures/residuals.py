@@ -55,7 +55,8 @@ def residuals_caption(table: pd.DataFrame, by: str) -> str:
     """How large the errors are beside their sigmas, and what they have in common."""
     rows = _inliers(table)
     rms = float(np.sqrt((rows["error_px"] ** 2).mean()))
-    size = f"RMS error {rms:.1f} px, where sigmas of {float(np.sqrt((rows['sigma_px'] ** 2).mean())):.1f} px in their direction were expected. "
+    expected = float(np.sqrt((rows["sigma_px"] ** 2).mean()))
+    size = f"RMS error {rms:.1f} px, where sigmas of {expected:.1f} px in its direction were expected. "
     if by == "observation":
         common = max(alike_in_a_view(rows, column) for column in ("error_u_px", "error_v_px"))
         return (

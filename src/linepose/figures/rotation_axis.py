@@ -48,7 +48,7 @@ def rotation_axis(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Fig
     sphere.set_title("axis in the body frame", loc="left")
 
     close = figure.add_subplot(grid[0, 1])
-    close.scatter(*near.T, c=colours, s=3, linewidths=0, rasterized=True)
+    close.scatter(near[:, 0], near[:, 1], c=colours, s=3, linewidths=0, rasterized=True)
     for name, (one, _) in marks.items():
         colour, marker = _MARKS[name]
         close.plot(*np.degrees(tangent @ one), color=colour, marker=marker, linestyle="none")
@@ -103,7 +103,7 @@ def rotation_axis_caption(samples: pd.DataFrame, hand_measured: ArrayLike) -> st
     scatter = np.degrees(np.sqrt(np.mean(np.sum((axis - pole) ** 2, axis=1))))
     off = np.degrees(np.arccos(np.clip(pole @ hand_axis, -1, 1)))
     return (
-        f"The sampled rotation from camera to body as an axis (coloured by density) and an angle of {angle_deg.mean():.2f}° "
-        f"± {angle_deg.std():.2f}°. The axes scatter by {scatter:.2f}° (RMS). The hand-measured rotation, red, has its "
-        f"axis {off:.1f}° off and an angle of {float(hand_deg):.1f}°."
+        "The sampled rotation from camera to body as an axis (coloured by density) and an angle of "
+        f"{angle_deg.mean():.2f}° ± {angle_deg.std():.2f}°. The axes scatter by {scatter:.2f}° (RMS). The hand-measured "
+        f"rotation, red, has its axis {off:.1f}° off and an angle of {float(hand_deg):.1f}°."
     )

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import Final, ParamSpec
+from typing import Any, Final, ParamSpec
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -32,7 +32,7 @@ ESTIMATE: Final = BLUE
 HAND_MEASURED: Final = RED
 TRUTH: Final = GREEN
 
-_STYLE: Final = {
+_STYLE: Final[Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 8,
     "axes.titlesize": 8,

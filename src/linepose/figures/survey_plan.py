@@ -37,7 +37,8 @@ def survey_plan(survey: Survey, accepted: list[int], estimated: pd.DataFrame) ->
     axes.plot(*np.stack([plan, plan + tick], axis=0).transpose(2, 0, 1), color=BLACK, linewidth=0.8, zorder=2)
     for chosen, marker in ((kept, "o"), (~kept, "s")):
         dots = axes.scatter(
-            *plan[chosen].T,
+            plan[chosen, 0],
+            plan[chosen, 1],
             c=tilt_deg[chosen],
             vmin=0.0,
             vmax=float(tilt_deg.max()),

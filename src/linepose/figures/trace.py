@@ -100,8 +100,8 @@ def autocorrelation_caption(diagnostics: pd.DataFrame, n_steps: int) -> str:
     """The autocorrelation time against the chain's length."""
     time = diagnostics.loc[diagnostics["stage"] == "inliers", "autocorrelation_time"].max()
     return (
-        f"How long a walker remembers: the longest autocorrelation time is estimated at {time:.0f} steps. The chain has "
-        f"{n_steps} steps, {n_steps / time:.0f} times as many; {MINIMUM_STEPS_PER_TIME} times is the rule for a "
+        f"How long a walker remembers: the longest autocorrelation time is estimated at {time:.0f} steps. The chain "
+        f"has {n_steps} steps, {n_steps / time:.0f} times as many; {MINIMUM_STEPS_PER_TIME} times is the rule for a "
         "trustworthy estimate."
     )
 
