@@ -11,6 +11,9 @@ configfile: "config/config.yaml"
 container: None
 
 
+report: "workflow/report/workflow.rst"
+
+
 include: "workflow/rules/common.smk"
 include: "workflow/rules/fetch.smk"
 include: "workflow/rules/compile.smk"
@@ -34,6 +37,7 @@ include: "workflow/rules/sensitivity.smk"
 include: "workflow/rules/experiments.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/regression.smk"
+include: "workflow/rules/report.smk"
 
 
 rule all:
@@ -42,6 +46,6 @@ rule all:
         expand("results/{platform}/pose.parquet", platform=PLATFORMS),
         expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
         rules.experiments.input,
-        expand("results/{platform}/figures", platform=PLATFORMS),
         "results/regression.parquet",
+        "results/report.html",
         "results/logs/regression.passed",

@@ -4,7 +4,7 @@ from snakemake.exceptions import WorkflowError
 
 from linepose.config.project import load_project
 from linepose.errors import LineposeError
-from linepose.provenance import source_digest
+from linepose.provenance import files_digest, source_digest
 
 try:
     PROJECT = load_project(config, Path())

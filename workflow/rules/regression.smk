@@ -13,7 +13,12 @@ rule regression:
         sigma=expand("results/{platform}/navigation_sigma.parquet", platform=REGRESSED),
     output:
         parquet="results/regression.parquet",
-        csv="results/regression.csv",
+        csv=report(
+            "results/regression.csv",
+            caption="../report/regression.rst",
+            category="Report",
+            labels={"result": "published and obtained numbers"},
+        ),
     log:
         "results/logs/regression.log",
     conda:

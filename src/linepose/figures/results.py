@@ -30,7 +30,7 @@ class ScanExample:
 
 @dataclass(frozen=True)
 class PlatformResults:
-    """What figures know of a platform: its file, the folder of its results, the truth and a scan where there are any."""
+    """What figures know of a platform: its file, the folder of its results, truth and scan where there are any."""
 
     name: str
     platform: Platform

@@ -104,6 +104,6 @@ def rotation_axis_caption(samples: pd.DataFrame, hand_measured: ArrayLike) -> st
     off = np.degrees(np.arccos(np.clip(pole @ hand_axis, -1, 1)))
     return (
         "The sampled rotation from camera to body as an axis (coloured by density) and an angle of "
-        f"{angle_deg.mean():.2f}° ± {angle_deg.std():.2f}°. The axes scatter by {scatter:.2f}° (RMS). The hand-measured "
-        f"rotation, red, has its axis {off:.1f}° off and an angle of {float(hand_deg):.1f}°."
+        f"{angle_deg.mean():.2f}° ± {angle_deg.std():.2f}°. The axes scatter by {scatter:.2f}° (RMS). The hand-measured"
+        f" rotation, red, has its axis {off:.1f}° off and an angle of {float(hand_deg):.1f}°."
     )
