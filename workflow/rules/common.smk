@@ -7,7 +7,7 @@ from snakemake.logging import logger
 from linepose.config.project import load_project
 from linepose.datasets import can_be_reached
 from linepose.errors import LineposeError
-from linepose.provenance import source_digest
+from linepose.provenance import files_digest, source_digest
 
 
 def can_download(dataset):
@@ -42,7 +42,8 @@ wildcard_constraints:
 def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
     return PROJECT.platforms[wildcards.platform].model_dump(
-        mode="json", exclude={"description", "published", "experiments"}
+        mode="json",
+        exclude={"description", "published", "experiments", "outline"},
     )
 
 

@@ -37,7 +37,12 @@ rule regression:
         ),
     output:
         parquet="results/regression.parquet",
-        csv="results/regression.csv",
+        csv=report(
+            "results/regression.csv",
+            caption="../report/regression.rst",
+            category="Report",
+            labels={"result": "published and obtained numbers"},
+        ),
     log:
         "results/logs/regression.log",
     conda:

@@ -19,6 +19,7 @@ from pydantic import (
 
 from linepose.camera import Camera, CameraSigmas
 from linepose.config.experiments import ExperimentsSection
+from linepose.config.outline import OutlineSection
 from linepose.config.schema import Section, validated
 from linepose.errors import InputError
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
@@ -168,6 +169,7 @@ class Platform(Section):
         None, description="The published numbers that the results are held against, if any."
     )
 
+    outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
     experiments: ExperimentsSection = Field(
         ExperimentsSection(), description="Experiments on the accepted observations."
     )

@@ -7,7 +7,8 @@ import pandas as pd
 
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.tables.published import LOW_DIVERSITY_NOTE
-from linepose.tables.regression import POSE_ABSOLUTE, ROUNDING, likelihood_row, row
+from linepose.tables.regression import POSE_ABSOLUTE, ROUNDING, likelihood_row
+from linepose.tables.row import row
 
 SIGMA_RELATIVE: Final = 0.15  # the chains are short and the subsets small
 INSIDE_AT_LEAST: Final = 0.95
