@@ -1,5 +1,6 @@
 """Hold the results against the published numbers."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -8,7 +9,7 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
     from linepose.experiment_schemas import BASIN_SUMMARY, REPEATABILITY, SUBSETS
-    from linepose.result_schemas import NAVIGATION_SIGMA, OUTLIERS, POSE, REGRESSION
+    from linepose.result_schemas import NAVIGATION_SIGMA, OUTLIERS, POSE, REGRESSION, TRUTH_ERROR
     from linepose.storage import read_table, write_csv, write_table
     from linepose.tables.experiments_regression import basin_rows, table_rows
     from linepose.tables.regression import PlatformResults, regression_table
@@ -21,6 +22,9 @@ with stage(snakemake) as log:
         )
         for name, pose, outliers, sigma in files
     }
+    known_truth = zip(snakemake.params.on_truth, snakemake.input.truth, snakemake.input.truth_error, strict=True)
+    for name, truth, error in known_truth:
+        results[name] = replace(results[name], truth=pd.read_parquet(truth), truth_error=read_table(error, TRUTH_ERROR))
     published = read_yaml(Path(snakemake.input.published))
     rows = []
     for name, subsets, pairs in zip(

@@ -7,6 +7,7 @@ import pyarrow as pa
 from linepose import navigation
 from linepose.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.residual_tables import POINT_COVARIANCE_COLUMNS
 
 LAPLACE_SIGMA_COLUMNS: Final = tuple(f"laplace_{name}" for name in SIGMA_COLUMNS)
 
@@ -34,6 +35,7 @@ def flags(*names: str) -> list[pa.Field]:
 _POINT = [*whole_numbers("observation", "point", "time_us"), *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS)]
 
 POINTS: Final = pa.schema(_POINT)
+SCAN_POINTS: Final = pa.schema([*whole_numbers("observation", "point", "time_us"), *floats("u_px", "line")])
 OBSERVATIONS: Final = pa.schema([*_POINT, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
 OUTLIERS: Final = pa.schema(
     [
@@ -81,7 +83,26 @@ POSE: Final = pa.schema(
         *whole_numbers("n_evaluations"),
     ]
 )
+RESIDUALS: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("observation", "point"),
+        *floats("error_px", "error_u_px", "error_v_px", "sigma_px"),
+    ]
+)
+ESTIMATED_POINTS: Final = pa.schema(
+    [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS, *POINT_COVARIANCE_COLUMNS)]
+)
+FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
 NAVIGATION_SIGMA: Final = pa.schema(floats(*navigation.SIGMA_COLUMNS))
+TRUTH_ERROR: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("n_observations"),
+        *texts("quantity"),
+        *floats("error", "sigma", "error_in_sigmas"),
+    ]
+)
 REGRESSION: Final = pa.schema(
     [
         *texts("quantity"),

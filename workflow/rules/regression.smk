@@ -3,6 +3,7 @@ REGRESSED = {
     for key in PLATFORMS
     if PROJECT.platforms[key].published
 }
+REGRESSED_ON_TRUTH = [key for key in REGRESSED if key in PROJECT.simulated]
 
 # Platforms with all experiments that the paper has numbers of.
 COMPARED = [
@@ -30,9 +31,18 @@ rule regression:
         pose=expand("results/{platform}/pose.parquet", platform=REGRESSED),
         outliers=expand("results/{platform}/outliers.parquet", platform=REGRESSED),
         sigma=expand("results/{platform}/navigation_sigma.parquet", platform=REGRESSED),
+        truth=expand("results/{platform}/truth.parquet", platform=REGRESSED_ON_TRUTH),
+        truth_error=expand(
+            "results/{platform}/truth_error.parquet", platform=REGRESSED_ON_TRUTH
+        ),
     output:
         parquet="results/regression.parquet",
-        csv="results/regression.csv",
+        csv=report(
+            "results/regression.csv",
+            caption="../report/regression.rst",
+            category="Report",
+            labels={"result": "published and obtained numbers"},
+        ),
     log:
         "results/logs/regression.log",
     conda:
@@ -41,6 +51,7 @@ rule regression:
         published_as=REGRESSED,
         compared=COMPARED,
         swept=SWEPT,
+        on_truth=REGRESSED_ON_TRUTH,
         code=source_digest("linepose.tables.experiments_regression"),
     script:
         "../../scripts/regression.py"

@@ -7,7 +7,8 @@ import pandas as pd
 
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.tables.published import LOW_DIVERSITY_NOTE
-from linepose.tables.regression import POSE_ABSOLUTE, ROUNDING, likelihood_row, row
+from linepose.tables.regression import POSE_ABSOLUTE, ROUNDING, likelihood_row
+from linepose.tables.row import row
 
 SIGMA_RELATIVE: Final = 0.15  # the chains are short and the subsets small
 INSIDE_AT_LEAST: Final = 0.95
@@ -44,11 +45,15 @@ def basin_rows(name: str, published: Mapping[str, Any], summary: pd.DataFrame) -
     beyond = published["section4"]["basin"]["beyond_success_rate"]
     low, high = OUTSIDE_FROM_TO
     interval = f"{100 * inner['success_rate_low']:.1f} to {100 * inner['success_rate_high']:.1f} %"
-    inside_note = f"at least 95 %: passes where the 95 % interval, here {interval} of {inner['n_starts']} starts, reaches it"
+    inside_note = (
+        f"at least 95 %: passes where the 95 % interval, here {interval} of {inner['n_starts']} starts, reaches it"
+    )
     inside = row(f"{name}, section 4.7, success inside", 1.0, inner["success_rate"], 1 - INSIDE_AT_LEAST, inside_note)
     inside["passed"] = bool(inner["success_rate_high"] >= INSIDE_AT_LEAST)
     outside_note = "approx. 60 %: passes from 50 to 75 %"
-    outside = row(f"{name}, section 4.7, success outside", beyond, outer["success_rate"], (high - low) / 2, outside_note)
+    outside = row(
+        f"{name}, section 4.7, success outside", beyond, outer["success_rate"], (high - low) / 2, outside_note
+    )
     outside["passed"] = bool(low <= outer["success_rate"] <= high)
     return [inside, outside]
 

@@ -9,7 +9,7 @@ import pandas as pd
 from linepose.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 
-LOW_DIVERSITY_NOTE: Final = "the published pose has -log L 21.606, the minimum 21.163: its search stopped before it"
+LOW_DIVERSITY_NOTE: Final = "the published pose has -log L 21.606, above the minimum obtained here, 21.163"
 _STAGES: Final = {"all_25": "all", "inliers_16": "inliers", "hand_measured": "hand_measured"}
 
 

@@ -7,6 +7,8 @@ from linepose.config.experiments import BasinSection, ExperimentsSection, Subset
 from linepose.config.schema import validated
 from linepose.errors import InputError
 
+RULE = {"angle": "roll", "count": 1}
+
 
 def message(values: dict) -> str:
     with pytest.raises(InputError) as caught:

@@ -44,8 +44,8 @@ def test_reference_is_the_inliers_optimum_with_their_samples_covariance(gaussian
     random = np.random.default_rng(1)
     optima = pd.DataFrame(random.random((2, 6)), columns=POSE_COLUMNS)
     optima[list(LAPLACE_SIGMA_COLUMNS)] = 1.0
-    rest = {name: 1 for name in OPTIMA.names if name not in optima} | {"converged": True}
-    optima = optima.assign(**rest, stage=["all", "inliers"])
+    rest = {name: 1 for name in OPTIMA.names if name not in optima}
+    optima = optima.assign(**(rest | {"converged": True, "stage": ["all", "inliers"]}))
     write_table(optima, tmp_path / "optima.parquet", OPTIMA)
     samples = random.standard_normal((40, 6)) @ random.standard_normal((6, 6))
     chain = pd.DataFrame(samples, columns=POSE_COLUMNS).assign(log_likelihood=0.0)
