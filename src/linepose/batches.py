@@ -70,6 +70,8 @@ def inputs_digest(settings: Mapping[str, Any], files: Iterable[Path | str]) -> s
 def remove_finished(folder: Path) -> None:
     """Remove the batches of work whose result is written, and those of earlier work that was never finished."""
     shutil.rmtree(folder.parent, ignore_errors=True)
+    if not any(folder.parent.parent.iterdir()):
+        folder.parent.parent.rmdir()
 
 
 def _file(folder: Path, name: str) -> Path:

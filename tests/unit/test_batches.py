@@ -112,7 +112,9 @@ def test_digest_tells_settings_and_contents_apart(tmp_path):
 
 
 def test_finished_and_outdated_work_is_removed(tmp_path):
-    for digest in ("new", "old"):
-        run_batches(table, NAMES[:1], tmp_path / "basin" / digest, SCHEMA, 1)
-    remove_finished(tmp_path / "basin" / "new")
-    assert not (tmp_path / "basin").exists()
+    for kind, digest in (("basin", "new"), ("basin", "old"), ("splits", "new")):
+        run_batches(table, NAMES[:1], tmp_path / "work" / kind / digest, SCHEMA, 1)
+    remove_finished(tmp_path / "work" / "basin" / "new")
+    assert [path.name for path in (tmp_path / "work").iterdir()] == ["splits"]
+    remove_finished(tmp_path / "work" / "splits" / "new")
+    assert list(tmp_path.iterdir()) == []

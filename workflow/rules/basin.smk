@@ -11,7 +11,7 @@ rule basin:
         "results/logs/{platform}/basin.log",
     conda:
         "../../environment.yml"
-    threads: workflow.cores
+    threads: 64  # as many as there are
     params:
         platform=settings,
         basin=experiment("basin"),

@@ -11,7 +11,7 @@ rule splits:
         "results/logs/{platform}/splits.log",
     conda:
         "../../environment.yml"
-    threads: workflow.cores
+    threads: 64  # as many as there are
     params:
         platform=settings,
         repeatability=experiment("repeatability"),
