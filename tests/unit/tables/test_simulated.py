@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.result_schemas import TRUTH_ERROR
 from linepose.tables.simulated import fault_rows, sigma_rows, truth_rows
-from linepose.tables.truth_error import truth_error_table
+from linepose.tables.truth_error import true_pose, truth_error_table
 
 TRUTH = np.array([0.2, -0.1, -0.8, -0.8, 0.7, -1.4])
 PUBLISHED = {"sigma": [0.03, 0.05, 0.06, 0.016, 0.018, 0.009]}
@@ -46,6 +46,17 @@ def test_error_of_the_whole(errors):
     for name, part in {"position_m": slice(0, 3), "rotation_rad": slice(3, 6), "pose": slice(0, 6)}.items():
         expected = np.sqrt(error[part] @ np.linalg.inv(covariance[part, part]) @ error[part])
         assert whole.loc[name, "error_in_sigmas"] == pytest.approx(expected)
+
+
+def test_truth_from_a_table_of_results(tmp_path, errors):
+    columns = {name: np.full(3, value) for name, value in zip(POSE_COLUMNS, TRUTH, strict=True)}
+    pd.DataFrame(columns).to_parquet(tmp_path / "truth.parquet")
+    truth = true_pose(pd.read_parquet(tmp_path / "truth.parquet"))
+    truth.flags.writeable = False  # as tables may give it
+    np.testing.assert_array_equal(truth, TRUTH)
+    optima = pd.DataFrame([{"stage": "all", "n_observations": 3, **dict(zip(POSE_COLUMNS, TRUTH, strict=True))}])
+    samples = {"all": np.random.default_rng(0).normal(size=(50, 6))}
+    assert np.all(truth_error_table(optima, samples, truth)["error"] == 0.0)
 
 
 def test_table_fits_its_schema(errors):
@@ -98,6 +109,11 @@ def test_error_beyond_its_own_sigmas_is_shown_and_explained(errors):
     assert "sigmas are too small" in beyond["note"]
     assert rows["robot, error against truth, r_x_m"]["passed"]
     assert not rows["robot, error against truth in sigmas, r_y_m"]["known_deviation"]
+    limits = [
+        rows[f"robot, error against truth in sigmas, {name}"]["tolerance"] for name in ("r_x_m", "position_m", "pose")
+    ]
+    # 99.73 % points of chi with 1, 3 and 6 degrees of freedom, as tables print them
+    np.testing.assert_allclose(limits, [3.0, 3.76, 4.48], atol=0.01)
 
 
 def test_error_beyond_the_published_sigmas_fails(errors):
