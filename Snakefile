@@ -11,7 +11,11 @@ configfile: "config/config.yaml"
 container: None
 
 
+report: "workflow/report/workflow.rst"
+
+
 include: "workflow/rules/common.smk"
+include: "workflow/rules/wanted.smk"
 include: "workflow/rules/fetch.smk"
 include: "workflow/rules/compile.smk"
 include: "workflow/rules/check_data.smk"
@@ -22,8 +26,22 @@ include: "workflow/rules/reject_outliers.smk"
 include: "workflow/rules/optimise.smk"
 include: "workflow/rules/sample.smk"
 include: "workflow/rules/diagnose.smk"
+include: "workflow/rules/residuals.smk"
+include: "workflow/rules/uncertainty.smk"
+include: "workflow/rules/subsets.smk"
+include: "workflow/rules/repeatability.smk"
+include: "workflow/rules/splits.smk"
+include: "workflow/rules/leave_one_out.smk"
+include: "workflow/rules/basin.smk"
+include: "workflow/rules/basin_summary.smk"
+include: "workflow/rules/mapping.smk"
+include: "workflow/rules/sensitivity.smk"
+include: "workflow/rules/experiments.smk"
 include: "workflow/rules/truth_error.smk"
 include: "workflow/rules/regression.smk"
+include: "workflow/rules/published_tables.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/report.smk"
 
 
 rule all:
@@ -31,6 +49,9 @@ rule all:
     input:
         expand("results/{platform}/pose.parquet", platform=PLATFORMS),
         expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
+        rules.experiments.input,
+        rules.published_tables.output if COMPARED else [],
         expand("results/{platform}/truth_error.parquet", platform=PROJECT.simulated),
         "results/regression.parquet",
+        "results/report.html",
         "results/logs/regression.passed",

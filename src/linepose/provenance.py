@@ -18,6 +18,15 @@ def source_digest(module: str) -> str:
     return digest.hexdigest()[:16]
 
 
+def files_digest(folder: str) -> str:
+    """Digest of all files in a folder of this package ("report/templates"): what a page is made of, beside its code."""
+    digest = hashlib.sha256()
+    for path in sorted((_PACKAGE / folder).iterdir()):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
 def _closure(start: Path) -> set[Path]:
     found: set[Path] = set()
     waiting = [start]

@@ -7,7 +7,7 @@ from snakemake.logging import logger
 from linepose.config.project import load_project
 from linepose.datasets import can_be_reached
 from linepose.errors import LineposeError
-from linepose.provenance import source_digest
+from linepose.provenance import files_digest, source_digest
 
 
 def can_download(dataset):
@@ -32,7 +32,7 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
-PLATFORMS = list(PROJECT.platforms)
+PLATFORMS = STUDY.platforms
 
 
 wildcard_constraints:
@@ -42,8 +42,21 @@ wildcard_constraints:
 def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
     return PROJECT.platforms[wildcards.platform].model_dump(
-        mode="json", exclude={"description", "published"}
+        mode="json",
+        exclude={"description", "published", "experiments", "outline"},
     )
+
+
+def experiment(key):
+    """What the platform's file says of one experiment, as a rule's parameter."""
+    return lambda wildcards: PROJECT.platforms[
+        wildcards.platform
+    ].experiments.model_dump(mode="json")[key]
+
+
+def platform_file(wildcards):
+    """The platform's file, for messages."""
+    return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
 
 
 def section(key):

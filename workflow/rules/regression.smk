@@ -5,10 +5,29 @@ REGRESSED = {
 }
 REGRESSED_ON_TRUTH = [key for key in REGRESSED if key in PROJECT.simulated]
 
+# Platforms with all experiments that the paper has numbers of.
+COMPARED = [
+    key
+    for key, published in REGRESSED.items()
+    if published == "ladybird"
+    and {"high", "low"} <= set(PROJECT.platforms[key].experiments.subsets)
+    and PROJECT.platforms[key].experiments.repeatability
+    and PROJECT.platforms[key].experiments.repeatability.first
+]
+SWEPT = [
+    key
+    for key in COMPARED
+    if PROJECT.platforms[key].experiments.basin
+    and "powell" in PROJECT.platforms[key].experiments.basin.optimisers
+]
+
 
 rule regression:
     input:
         published=STUDY.published,
+        subsets=expand("results/{platform}/subsets.parquet", platform=COMPARED),
+        pairs=expand("results/{platform}/repeatability.parquet", platform=COMPARED),
+        basin=expand("results/{platform}/basin_summary.parquet", platform=SWEPT),
         pose=expand("results/{platform}/pose.parquet", platform=REGRESSED),
         outliers=expand("results/{platform}/outliers.parquet", platform=REGRESSED),
         sigma=expand("results/{platform}/navigation_sigma.parquet", platform=REGRESSED),
@@ -18,15 +37,22 @@ rule regression:
         ),
     output:
         parquet="results/regression.parquet",
-        csv="results/regression.csv",
+        csv=report(
+            "results/regression.csv",
+            caption="../report/regression.rst",
+            category="Report",
+            labels={"result": "published and obtained numbers"},
+        ),
     log:
         "results/logs/regression.log",
     conda:
         "../../environment.yml"
     params:
         published_as=REGRESSED,
+        compared=COMPARED,
+        swept=SWEPT,
         on_truth=REGRESSED_ON_TRUTH,
-        code=source_digest("linepose.tables.regression"),
+        code=source_digest("linepose.tables.experiments_regression"),
     script:
         "../../scripts/regression.py"
 

@@ -18,6 +18,8 @@ from pydantic import (
 )
 
 from linepose.camera import Camera, CameraSigmas
+from linepose.config.experiments import ExperimentsSection
+from linepose.config.outline import OutlineSection
 from linepose.config.schema import Section, validated
 from linepose.errors import InputError
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
@@ -165,6 +167,11 @@ class Platform(Section):
     noise_model: Literal["published"] = Field("published", description="The likelihood's model of the noise.")
     published: Literal["ladybird", "ladybird_attitude", "ladybird_simulated", "shrimp_simulated"] | None = Field(
         None, description="The published numbers that the results are held against, if any."
+    )
+
+    outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
+    experiments: ExperimentsSection = Field(
+        ExperimentsSection(), description="Experiments on the accepted observations."
     )
 
     @model_validator(mode="after")

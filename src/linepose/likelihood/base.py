@@ -78,6 +78,13 @@ class Likelihood(ABC):
     def residuals(self, parameters: ArrayLike) -> Residuals:
         """Residuals and estimated points at one parameter vector (P,)."""
 
+    def mirrored(self) -> "Likelihood":
+        """The same model with points behind the camera reprojected as if in front, as the paper's equations have it.
+
+        A model that makes no difference between the two is its own.
+        """
+        return self
+
     @abstractmethod
     def select(self, numbers: Sequence[int]) -> "Likelihood":
         """The same model of these observations only."""

@@ -48,7 +48,9 @@ def workspace(n_observations: int, count: int) -> Workspace:
 
 
 @part
-def _evaluate(survey: Floats, pose: Floats, rays: Floats, sums: Floats, points: Floats, residuals: Floats) -> float:
+def _evaluate(
+    survey: Floats, pose: Floats, rays: Floats, sums: Floats, points: Floats, residuals: Floats, most_behind: float
+) -> float:
     axes = np.empty((3, 3))
     scores = np.zeros(2 * LANES)
     camera_axes(pose, axes)
@@ -64,7 +66,7 @@ def _evaluate(survey: Floats, pose: Floats, rays: Floats, sums: Floats, points: 
     for lane in range(LANES):
         total += scores[lane]
         behind += scores[LANES + lane]
-    return -0.5 * total if behind == 0.0 and total < np.inf else -np.inf
+    return -0.5 * total if behind <= most_behind and total < np.inf else -np.inf
 
 
 def _digest() -> str:
@@ -76,16 +78,16 @@ def _compiled(sources: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The two entry points. `sources` becomes part of the key of the cache on disk, which else knows this file only."""
 
     @njit(cache=True, error_model="numpy", fastmath=FUSED_ARITHMETIC)
-    def evaluate(survey, pose, rays, sums, points, residuals):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    def evaluate(survey, pose, rays, sums, points, residuals, most_behind):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
         _ = sources
-        return _evaluate(survey, pose, rays[0], sums[0], points[0], residuals[0])
+        return _evaluate(survey, pose, rays[0], sums[0], points[0], residuals[0], most_behind)
 
     @njit(cache=True, parallel=True, error_model="numpy", fastmath=FUSED_ARITHMETIC)
-    def evaluate_rows(survey, poses, rays, sums, points, residuals, out):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    def evaluate_rows(survey, poses, rays, sums, points, residuals, most_behind, out):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
         _ = sources
         for row in prange(poses.shape[0]):
             own = get_thread_id()
-            out[row] = _evaluate(survey, poses[row], rays[own], sums[own], points[own], residuals[own])
+            out[row] = _evaluate(survey, poses[row], rays[own], sums[own], points[own], residuals[own], most_behind)
 
     return evaluate, evaluate_rows
 

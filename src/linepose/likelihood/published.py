@@ -24,12 +24,13 @@ class PublishedLikelihood(Likelihood):
 
     A point with fewer than two views does not enter, and is logged. Two rays within 1e-8 rad of parallel say nothing
     of their point. The log-likelihood is minus infinity where a point lies behind a camera that observed it, or where
-    all of its rays are parallel.
+    all of its rays are parallel. `most_behind` of such points are let pass: none, but see `mirrored`.
     """
 
-    def __init__(self, survey: Survey, camera: Camera) -> None:
+    def __init__(self, survey: Survey, camera: Camera, most_behind: float = 0.0) -> None:
         self.survey = survey
         self.camera = camera
+        self._most_behind = most_behind
         self._mask = usable(survey)
         if not np.any(self._mask):
             raise InputError("survey", "no point with two views", "at least one", "add observations of the same points")
@@ -37,7 +38,15 @@ class PublishedLikelihood(Likelihood):
         self._rows = survey_rows(survey, camera, self._mask, self._origins)
         self._pose = np.zeros(N_PARAMETERS)
         single = kernel.workspace(survey.n_observations, 1)
-        self._arguments = (self._rows, self._pose, single.rays, single.sums, single.points, single.residuals)
+        self._arguments = (
+            self._rows,
+            self._pose,
+            single.rays,
+            single.sums,
+            single.points,
+            single.residuals,
+            most_behind,
+        )
         self._single = single
         self._many: kernel.Workspace | None = None
 
@@ -53,7 +62,9 @@ class PublishedLikelihood(Likelihood):
             self._many = kernel.workspace(self.survey.n_observations, kernel.MAXIMUM_THREADS)
         many = self._many
         out = np.empty(len(poses))
-        kernel.evaluate_rows(self._rows, poses, many.rays, many.sums, many.points, many.residuals, out)
+        kernel.evaluate_rows(
+            self._rows, poses, many.rays, many.sums, many.points, many.residuals, self._most_behind, out
+        )
         return out
 
     def residuals(self, parameters: ArrayLike) -> Residuals:
@@ -92,4 +103,8 @@ class PublishedLikelihood(Likelihood):
 
     def select(self, numbers: Sequence[int]) -> "PublishedLikelihood":
         """The same model of these observations only."""
-        return PublishedLikelihood(self.survey.select(numbers), self.camera)
+        return PublishedLikelihood(self.survey.select(numbers), self.camera, self._most_behind)
+
+    def mirrored(self) -> "PublishedLikelihood":
+        """The same model with points behind the camera reprojected as if in front, as Eq. 18 has it."""
+        return PublishedLikelihood(self.survey, self.camera, np.inf)

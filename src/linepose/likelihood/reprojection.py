@@ -36,7 +36,7 @@ def reproject(
             along = dn * pn + de * pe + dd * pd
             depth = cosine * along - sine * across1
             in_front = depth > 0.0
-            inverse = 1 / (depth if in_front else 1.0)
+            inverse = 1 / depth
             error_x, error_y = across1 * inverse / cosine, across2 * inverse
             squared = error_x * error_x + error_y * error_y
             weight_x = error_x if squared > NO_ERROR else 1.0

@@ -112,6 +112,20 @@ def test_points_behind_the_camera_are_impossible_not_nan():
     assert np.isfinite(likelihood.log_likelihood(SYNTHETIC_POSE))
 
 
+def test_mirrored_model_is_the_plain_equations_behind_the_camera():
+    survey = synthetic_survey(6, 5, seed=1)
+    pose = SYNTHETIC_POSE.copy()
+    pose[2] += 20.0
+    model = PublishedLikelihood(survey, DISTORTED_CAMERA).mirrored()
+    plain = reference.evaluate(survey, DISTORTED_CAMERA, pose)
+    expected = -0.5 * np.nansum((plain.error_px / plain.sigma_px) ** 2)
+    assert model.log_likelihood(pose) == pytest.approx(expected, rel=RELATIVE)
+    assert model.select(survey.number.tolist()).log_likelihoods([pose])[0] == pytest.approx(expected, rel=RELATIVE)
+    assert model.log_likelihood(SYNTHETIC_POSE) == PublishedLikelihood(survey, DISTORTED_CAMERA).log_likelihood(
+        SYNTHETIC_POSE
+    )
+
+
 def test_parallel_rays_say_nothing():
     survey = synthetic_survey(4, 3, seed=4)
     twin = replace(

@@ -1,0 +1,25 @@
+"""Draw all figures of a platform."""
+
+from pathlib import Path
+
+from adapter import stage
+
+with stage(snakemake) as log:
+    from linepose.config.platform import Platform
+    from linepose.figures.render import render_figures
+    from linepose.figures.results import PlatformResults
+    from linepose.result_schemas import FIGURES
+    from linepose.storage import write_table
+
+    results = PlatformResults(
+        name=snakemake.wildcards.platform,
+        platform=Platform.model_validate(snakemake.params.platform),
+        folder=Path(snakemake.input.pose).parent,
+        threshold_px=snakemake.params.outliers["threshold_px"],
+    )
+    folder = Path(snakemake.output[0])
+    index = render_figures(results, folder)
+    write_table(index, folder / "index.parquet", FIGURES)
+    log.info("%d figures", (index["left_out"] == "").sum())
+    for _, row in index[index["left_out"] != ""].iterrows():
+        log.info("%s left out: %s", row["figure"], row["left_out"])

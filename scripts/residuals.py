@@ -1,0 +1,26 @@
+"""Note the residuals and the estimated points, of all observations and of the accepted ones."""
+
+from adapter import stage
+
+with stage(snakemake) as log:
+    from linepose.config.platform import Platform
+    from linepose.likelihood.models import likelihood_of
+    from linepose.observations import survey_from_table
+    from linepose.outliers import stage_observations
+    from linepose.residual_tables import residual_tables
+    from linepose.result_schemas import ESTIMATED_POINTS, OBSERVATIONS, OPTIMA, OUTLIERS, RESIDUALS
+    from linepose.storage import read_table, write_table
+
+    platform = Platform.model_validate(snakemake.params.platform)
+    survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
+    kept = {name: stages[name] for name in ("all", "inliers")}
+    optima = read_table(snakemake.input.optima, OPTIMA).set_index("stage")[list(likelihood.parameter_names)]
+    residuals, points = residual_tables(likelihood, kept, {name: optima.loc[name].to_numpy() for name in kept})
+    write_table(residuals, snakemake.output.residuals, RESIDUALS)
+    write_table(points, snakemake.output.points, ESTIMATED_POINTS)
+    inliers = residuals[residuals["stage"] == "inliers"]
+    log.info(
+        "mean error of the inliers %.2f px, mean sigma %.2f px", inliers["error_px"].mean(), inliers["sigma_px"].mean()
+    )

@@ -1,0 +1,27 @@
+"""Estimate the pose under other choices of camera, residual and data."""
+
+from adapter import stage
+
+with stage(snakemake) as log:
+    from linepose.config.platform import Platform
+    from linepose.config.study import SearchSection
+    from linepose.experiment_schemas import SENSITIVITY
+    from linepose.experiments.accepted import read_accepted
+    from linepose.experiments.sensitivity import camera_changes, sensitivity
+    from linepose.likelihood.models import likelihood_of
+    from linepose.likelihood.pixels import PixelLikelihood
+    from linepose.storage import write_table
+
+    platform = Platform.model_validate(snakemake.params.platform)
+    search = SearchSection.model_validate(snakemake.params.search).settings()
+    nominal = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers).accepted
+    changes = {"residual in pixels": PixelLikelihood(nominal)}
+    for name, camera in camera_changes(platform.intrinsics()).items():
+        changes[name] = likelihood_of(platform.noise_model, nominal.survey, camera)
+    files = zip(snakemake.input.other_observations, snakemake.input.other_outliers, strict=True)
+    for (name, other), (observations, outliers) in zip(snakemake.params.others.items(), files, strict=True):
+        changes[name] = read_accepted(Platform.model_validate(other), observations, outliers).accepted
+    table = sensitivity(nominal, changes, platform.start_pose(), search)
+    write_table(table, snakemake.output[0], SENSITIVITY)
+    for _, row in table.iterrows():
+        log.info("%s: %.2f sigmas", row["change"], row["mahalanobis"])

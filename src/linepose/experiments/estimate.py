@@ -1,0 +1,80 @@
+"""One estimate of the pose from one set of observations: what every experiment repeats under another condition."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from linepose.errors import EstimationError
+from linepose.likelihood.base import Likelihood
+from linepose.optimise import Optimum, Search, laplace_covariance, optimise
+from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.rotations import Floats
+from linepose.sampling import SamplingSettings, sample
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A pose (6,) with its covariance (6, 6), the observations (n,) it rests on, and -log L there."""
+
+    number: NDArray[np.int64]
+    pose: Floats
+    covariance: Floats
+    neg_log_likelihood: float
+    n_evaluations: int
+
+    def sigma(self) -> Floats:
+        """One standard deviation of each number of the pose (6,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    def row(self) -> dict[str, object]:
+        """The estimate as the columns of one table row."""
+        return {
+            "n_observations": len(self.number),
+            "observations": observation_list(self.number),
+            **dict(zip(POSE_COLUMNS, self.pose, strict=True)),
+            **dict(zip(SIGMA_COLUMNS, self.sigma(), strict=True)),
+            "neg_log_likelihood": self.neg_log_likelihood,
+            "n_evaluations": self.n_evaluations,
+        }
+
+
+def observation_list(numbers: ArrayLike) -> str:
+    """Observation numbers as a table shows them, in the given order, a space between."""
+    return " ".join(str(int(number)) for number in np.asarray(numbers))
+
+
+def estimate_by_sampling(
+    likelihood: Likelihood,
+    start: ArrayLike,
+    seed: int,
+    search: Search | None = None,
+    settings: SamplingSettings | None = None,
+) -> Estimate:
+    """The optimum from a start pose (6,), with the covariance of samples around it."""
+    optimum = optimise(likelihood, start, search)
+    chain = sample(likelihood, optimum.parameters, seed, settings)
+    return _estimate(likelihood, optimum, chain.covariance())
+
+
+def estimate_by_curvature(likelihood: Likelihood, start: ArrayLike, search: Search | None = None) -> Estimate:
+    """The optimum from a start pose (6,), with the covariance of the curvature there: a thousand times cheaper.
+
+    The covariance is NaN where the observations leave a direction of the pose open.
+    """
+    optimum = optimise(likelihood, start, search)
+    try:
+        covariance = laplace_covariance(likelihood, optimum.parameters)
+    except EstimationError:
+        covariance = np.full((likelihood.n_parameters, likelihood.n_parameters), np.nan)
+    return _estimate(likelihood, optimum, covariance)
+
+
+def _estimate(likelihood: Likelihood, optimum: Optimum, covariance: Floats) -> Estimate:
+    return Estimate(
+        number=likelihood.survey.number,
+        pose=optimum.parameters[:N_PARAMETERS],
+        covariance=covariance[:N_PARAMETERS, :N_PARAMETERS],
+        neg_log_likelihood=optimum.neg_log_likelihood,
+        n_evaluations=optimum.n_evaluations,
+    )

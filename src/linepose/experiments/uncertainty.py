@@ -1,0 +1,25 @@
+"""Uncertainty against the number of observations, at each stage of the outlier removal (Fig. 9)."""
+
+import numpy as np
+import pandas as pd
+
+from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.result_schemas import LAPLACE_SIGMA_COLUMNS
+
+METHODS = ("mcmc", "laplace")
+
+
+def uncertainty_by_stage(optima: pd.DataFrame, poses: pd.DataFrame) -> pd.DataFrame:
+    """Two rows a stage, `mcmc` and `laplace`: its pose and the sigma of each number; most observations first.
+
+    `optima` as in `result_schemas.OPTIMA` has the sigmas of the curvature, `poses` as in `POSE` the sampled ones.
+    """
+    sampled = poses.set_index("stage").loc[optima["stage"], list(SIGMA_COLUMNS)].to_numpy()
+    curved = optima[list(LAPLACE_SIGMA_COLUMNS)].to_numpy()
+    parts = []
+    for method, sigmas in zip(METHODS, (sampled, curved), strict=True):
+        part = optima[["stage", "n_observations", *POSE_COLUMNS]].assign(method=method)
+        part[list(SIGMA_COLUMNS)] = np.asarray(sigmas)
+        parts.append(part)
+    table = pd.concat(parts).sort_values(["n_observations", "method"], ascending=False, kind="stable")
+    return table.reset_index(drop=True)

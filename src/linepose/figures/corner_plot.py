@@ -1,0 +1,98 @@
+"""Figure 10: the sampled posterior of every pair of pose parameters."""
+
+from collections.abc import Mapping
+
+import corner
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike
+
+from linepose.figures.checks import usable_rows
+from linepose.figures.style import ESTIMATE, HAND_MEASURED, TRUTH, WIDE_IN, styled
+from linepose.pose import N_PARAMETERS, POSE_COLUMNS
+from linepose.rotations import Floats
+
+LABELS = ("$r_x$ (m)", "$r_y$ (m)", "$r_z$ (m)", r"$\theta e_x$ (rad)", r"$\theta e_y$ (rad)", r"$\theta e_z$ (rad)")
+_SHADE = "#777777"
+_MARKS = {"optimum": (ESTIMATE, "s"), "hand measured": (HAND_MEASURED, "D"), "truth": (TRUTH, "o")}
+
+
+@styled
+def corner_plot(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figure:
+    """Histograms and contours of the samples, with poses (6,) marked by name: optimum, hand measured, truth.
+
+    `samples` as in `result_schemas.SAMPLES`; contours hold 39, 68 and 95 % of the samples, dashes 16, 50 and 84 %.
+    """
+    chain = usable_rows(samples, POSE_COLUMNS, "samples")[list(POSE_COLUMNS)].to_numpy()
+    poses = {name: np.asarray(pose, dtype=float) for name, pose in marked.items()}
+    figure = Figure(figsize=(WIDE_IN, WIDE_IN))
+    corner.corner(
+        chain,
+        fig=figure,
+        range=_ranges(chain, poses),
+        bins=30,
+        smooth=0.8,
+        levels=(0.39, 0.68, 0.95),
+        quantiles=(0.16, 0.5, 0.84),
+        color=_SHADE,
+        plot_datapoints=False,
+        fill_contours=True,
+        contour_kwargs={"linewidths": 0.6},
+        hist_kwargs={"linewidth": 0.8},
+        max_n_ticks=3,
+    )
+    for name, pose in poses.items():
+        colour, marker = _MARKS[name]
+        corner.overplot_lines(figure, pose, color=colour, linewidth=0.8)
+        corner.overplot_points(figure, pose[None], color=colour, marker=marker, markersize=3.5)
+    for line in (line for axes in figure.axes for line in axes.lines if line.get_linestyle() == "--"):
+        line.set_linewidth(0.7)
+    _label(figure)
+    handles = [Line2D([], [], color=_MARKS[name][0], marker=_MARKS[name][1], label=name) for name in poses]
+    contours = Line2D([], [], color=_SHADE, label="39, 68, 95 % of the samples")
+    figure.legend(handles=[*handles, contours], loc="upper right", bbox_to_anchor=(0.98, 0.97), fontsize=8)
+    return figure
+
+
+def _ranges(chain: Floats, poses: Mapping[str, Floats]) -> list[tuple[float, float]]:
+    marks = np.array([*poses.values(), np.median(chain, axis=0)])
+    low = np.minimum(np.quantile(chain, 0.001, axis=0), marks.min(axis=0))
+    high = np.maximum(np.quantile(chain, 0.999, axis=0), marks.max(axis=0))
+    margin = 0.08 * (high - low)
+    return list(zip((low - margin).tolist(), (high + margin).tolist(), strict=True))
+
+
+def _label(figure: Figure) -> None:
+    axes = np.array(figure.axes).reshape(N_PARAMETERS, N_PARAMETERS)
+    for row in range(N_PARAMETERS):
+        for column in range(row + 1):
+            one = axes[row, column]
+            one.grid(visible=False)
+            one.tick_params(labelsize=6, length=2, pad=1)
+            one.tick_params(axis="x", labelrotation=45)
+            one.xaxis.set_major_locator(MaxNLocator(3, prune="both"))
+            if row > column:
+                one.yaxis.set_major_locator(MaxNLocator(3, prune="both"))
+            if row == N_PARAMETERS - 1:
+                one.set_xlabel(LABELS[column])
+                one.xaxis.set_label_coords(0.5, -0.55)
+            if column == 0 and row:
+                one.set_ylabel(LABELS[row])
+                one.yaxis.set_label_coords(-0.5, 0.5)
+    figure.subplots_adjust(left=0.13, bottom=0.115, right=0.975, top=0.99, wspace=0.06, hspace=0.06)
+
+
+def corner_plot_caption(samples: pd.DataFrame) -> str:
+    """How many samples, and the strongest correlation among the parameters."""
+    chain = samples[list(POSE_COLUMNS)].to_numpy()
+    correlation = np.corrcoef(chain.T) - np.eye(N_PARAMETERS)
+    i, j = np.unravel_index(int(np.abs(correlation).argmax()), correlation.shape)
+    first, second = (POSE_COLUMNS[k].rsplit("_", 1)[0] for k in sorted((i, j)))
+    return (
+        f"Posterior of the pose from {len(chain):,} samples: each parameter on the diagonal, each pair below it. "
+        f"The most correlated pair is {first} and {second} ({correlation[i, j]:+.2f}): the observations tell their "
+        "combination better than either alone."
+    )

@@ -1,0 +1,67 @@
+"""Whether disjoint halves of the observations agree: the distribution of their distance over random splits."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from scipy.stats import chi
+
+from linepose.figures.checks import usable_rows
+from linepose.figures.style import BLACK, BLUE, GREY, HALF_PAGE_IN, RED, blank_figure, styled
+from linepose.pose import N_PARAMETERS
+
+
+@styled
+def repeatability(splits: pd.DataFrame, pair: pd.DataFrame | None = None) -> Figure:
+    """Histogram of the distance in sigmas between the poses of two halves, beside what right sigmas would give.
+
+    `splits` as in `experiment_schemas.SPLITS`; `pair` as in `REPEATABILITY` adds the distance of two named subsets.
+    """
+    distance = _distances(splits)
+    named = (
+        None
+        if pair is None
+        else float(usable_rows(pair, ["mahalanobis"], "repeatability.parquet")["mahalanobis"].iloc[0])
+    )
+    most = 1.05 * max(float(distance.max()), 5.0, named or 0.0)
+    figure = blank_figure(HALF_PAGE_IN, 2.7)
+    axes = figure.add_subplot()
+    axes.hist(
+        distance,
+        bins=np.linspace(0, most, 31).tolist(),
+        density=True,
+        color=GREY,
+        label=f"{len(distance)} random splits",
+    )
+    shown = np.linspace(0, most, 200)
+    axes.plot(shown, chi.pdf(shown, N_PARAMETERS), color=BLUE, label="if the sigmas are right")
+    axes.axvline(float(np.median(distance)), color=BLACK, linestyle="--", linewidth=0.9, label="median of the splits")
+    if named is not None:
+        axes.axvline(named, color=RED, linewidth=1.4, label="the two named subsets")
+    axes.set(xlabel="Distance of the two poses (sigmas)", ylabel="Density (1/sigma)")
+    axes.set_xlim(0, most)
+    figure.legend(loc="outside upper center", ncols=2)
+    return figure
+
+
+def sigma_factor(splits: pd.DataFrame) -> float:
+    """By how much the sigmas would have to grow for the splits' median distance to be what right sigmas give."""
+    return float(np.median(_distances(splits)) / chi.median(N_PARAMETERS))
+
+
+def repeatability_caption(splits: pd.DataFrame) -> str:
+    """The median distance, and what it says of the sigmas."""
+    distance, factor = _distances(splits), sigma_factor(splits)
+    left = len(splits) - len(distance)
+    open_ones = f" {left} splits left a direction of the pose open and are not shown." if left else ""
+    return (
+        "Distance between the poses from two disjoint halves of the accepted observations, in sigmas, over random "
+        f"splits. The median is {np.median(distance):.2f}, where right sigmas give {chi.median(N_PARAMETERS):.2f}: the "
+        f"sigmas are {'too small' if factor > 1 else 'too large'} by a factor of "
+        f"{max(factor, 1 / factor):.2f}.{open_ones}"
+    )
+
+
+def _distances(splits: pd.DataFrame) -> pd.Series:
+    usable_rows(splits, ["split"], "splits.parquet")
+    known = splits.dropna(subset=["mahalanobis"]) if "mahalanobis" in splits else splits
+    return usable_rows(known, ["mahalanobis"], "splits.parquet, where both poses are determined")["mahalanobis"]

@@ -1,0 +1,73 @@
+"""The results of one platform as figures ask for them: read once, checked against their schema."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+
+from linepose.config.platform import Platform
+from linepose.figures.checks import stage_row
+from linepose.figures.scan import Intensity
+from linepose.observations import Survey, survey_from_table
+from linepose.outliers import stage_observations
+from linepose.pose import POSE_COLUMNS
+from linepose.result_schemas import OBSERVATIONS, OUTLIERS, POSE, SAMPLES
+from linepose.rotations import Floats
+from linepose.storage import read_table
+
+
+@dataclass(frozen=True)
+class ScanExample:
+    """One observation's scan lines (L, P) and the points found in it: point, u_px, line."""
+
+    observation: int
+    intensity: Intensity
+    points: pd.DataFrame
+
+
+@dataclass(frozen=True)
+class PlatformResults:
+    """What figures know of a platform: its file, the folder of its results, truth and scan where there are any."""
+
+    name: str
+    platform: Platform
+    folder: Path
+    threshold_px: float
+    true_pose: Floats | None = None
+    scan: Callable[[], ScanExample] | None = None
+    _read: dict[str, pd.DataFrame] = field(default_factory=dict)
+
+    def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
+        """A result by its name below the folder; raises InputError where it is missing or lacks columns."""
+        if name not in self._read:
+            self._read[name] = read_table(self.folder / f"{name}.parquet", schema)
+        return self._read[name]
+
+    def has(self, name: str) -> bool:
+        """Whether this result was made."""
+        return (self.folder / f"{name}.parquet").is_file()
+
+    def survey(self) -> Survey:
+        """All observations."""
+        return survey_from_table(self.table("observations", OBSERVATIONS))
+
+    def accepted(self) -> list[int]:
+        """Numbers of the accepted observations."""
+        return stage_observations(self.table("outliers", OUTLIERS))["inliers"]
+
+    def samples(self) -> pd.DataFrame:
+        """The chain of the accepted observations."""
+        return self.table("mcmc/inliers", SAMPLES)
+
+    def pose(self, stage: str) -> Floats:
+        """The pose (6,) of a stage, such as `inliers` or `hand_measured`."""
+        row = stage_row(self.table("pose", POSE), stage, POSE_COLUMNS, "pose.parquet")
+        return np.array(row[list(POSE_COLUMNS)], dtype=float)
+
+    def marked_poses(self) -> Mapping[str, Floats]:
+        """The poses (6,) that figures mark, by the name in the legend."""
+        marked = {"optimum": self.pose("inliers"), "hand measured": self.pose("hand_measured")}
+        return marked if self.true_pose is None else {**marked, "truth": self.true_pose}

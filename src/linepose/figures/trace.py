@@ -1,0 +1,111 @@
+"""The chain itself: where its walkers are at each step, and for how long they remember."""
+
+import emcee
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import ArrayLike
+
+from linepose.diagnostics import MINIMUM_STEPS_PER_TIME
+from linepose.figures.checks import usable_rows
+from linepose.figures.corner_plot import LABELS
+from linepose.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    HALF_PAGE_IN,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    blank_figure,
+    styled,
+)
+from linepose.pose import POSE_COLUMNS
+from linepose.rotations import Floats
+from linepose.stages import samples_from_table
+
+_COLOURS = (BLUE, RED, GREEN, SKY, ORANGE, PURPLE)
+_SHOWN_WALKERS = 5
+
+
+@styled
+def trace(samples: pd.DataFrame, optimum: ArrayLike) -> Figure:
+    """Each parameter over the kept steps: a few walkers, and the median and 68 % of all of them.
+
+    `samples` as in `result_schemas.SAMPLES`, optimum (6,).
+    """
+    chain = _chain(samples)
+    figure = blank_figure(HALF_PAGE_IN, 5.6)
+    panels = figure.subplots(len(POSE_COLUMNS), 1, sharex=True)
+    steps = np.arange(len(chain))
+    shown = np.linspace(0, chain.shape[1] - 1, _SHOWN_WALKERS).astype(int)
+    for i, (panel, label) in enumerate(zip(panels, LABELS, strict=True)):
+        low, middle, high = np.quantile(chain[:, :, i], (0.16, 0.5, 0.84), axis=1)
+        panel.plot(steps, chain[:, shown, i], color=GREY, linewidth=0.4)
+        panel.fill_between(steps, low, high, color=SKY, alpha=0.5, linewidth=0)
+        panel.plot(steps, middle, color=BLUE)
+        panel.axhline(float(np.asarray(optimum)[i]), color=BLACK, linewidth=0.7, linestyle="--")
+        panel.set_ylabel(label)
+        panel.margins(x=0)
+    panels[-1].set_xlabel("Step kept")
+    figure.align_ylabels()
+    handles = [
+        Line2D([], [], color=BLUE, label="median"),
+        Patch(color=SKY, alpha=0.5, label="68 % of the walkers"),
+        Line2D([], [], color=GREY, linewidth=0.8, label="one walker"),
+        Line2D([], [], color=BLACK, linewidth=0.7, linestyle="--", label="optimum"),
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=2)
+    return figure
+
+
+@styled
+def autocorrelation(samples: pd.DataFrame) -> Figure:
+    """How alike a walker's positions are that lie a number of steps apart, averaged over the walkers.
+
+    `samples` as in `result_schemas.SAMPLES`.
+    """
+    chain = _chain(samples)
+    figure = blank_figure(HALF_PAGE_IN, 2.8)
+    axes = figure.add_subplot()
+    for i, (label, colour) in enumerate(zip(LABELS, _COLOURS, strict=True)):
+        axes.plot(autocorrelation_function(chain[:, :, i]), color=colour, label=label.split(" (")[0], linewidth=0.9)
+    axes.axhline(0.0, color=BLACK, linewidth=0.6)
+    axes.set(xlabel="Lag (steps)", ylabel="Autocorrelation (no unit)")
+    axes.margins(x=0)
+    figure.legend(loc="outside upper center", ncols=6, columnspacing=0.8, handlelength=1.2)
+    return figure
+
+
+def autocorrelation_function(series: Floats) -> Floats:
+    """Autocorrelation of one parameter (S, W) at each lag (S,), averaged over the walkers; 1 at lag 0."""
+    return np.asarray(np.mean([emcee.autocorr.function_1d(walker) for walker in series.T], axis=0))
+
+
+def trace_caption(diagnostics: pd.DataFrame) -> str:
+    """Steps' worth of the chain: acceptance, effective samples, and R-hat."""
+    rows = diagnostics[diagnostics["stage"] == "inliers"]
+    return (
+        "The pose parameters over the kept steps of the chain. A chain that has settled shows a level band. "
+        f"Acceptance {100 * rows['acceptance_fraction'].iloc[0]:.0f} %, worst split R-hat "
+        f"{rows['split_r_hat'].max():.2f}, at least {rows['effective_sample_size'].min():,.0f} independent samples."
+    )
+
+
+def autocorrelation_caption(diagnostics: pd.DataFrame, n_steps: int) -> str:
+    """The autocorrelation time against the chain's length."""
+    time = diagnostics.loc[diagnostics["stage"] == "inliers", "autocorrelation_time"].max()
+    return (
+        f"How long a walker remembers: the longest autocorrelation time is estimated at {time:.0f} steps. The chain "
+        f"has {n_steps} steps, {n_steps / time:.0f} times as many; {MINIMUM_STEPS_PER_TIME} times is the rule for a "
+        "trustworthy estimate."
+    )
+
+
+def _chain(samples: pd.DataFrame) -> Floats:
+    usable_rows(samples, ["walker", "step", *POSE_COLUMNS], "samples")
+    return samples_from_table(samples, POSE_COLUMNS)

@@ -1,0 +1,41 @@
+"""Pictures inside a page: PNG files as data addresses, their colours reduced so that many fit into one file."""
+
+import base64
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from PIL import Image, UnidentifiedImageError
+
+from linepose.errors import InputError
+
+_COLOURS: Final = 128
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture's address (data URI) and its size in pixels."""
+
+    address: str
+    width: int
+    height: int
+
+
+def embedded(path: Path) -> Picture:
+    """A PNG file as a picture that needs no file; raises InputError where it cannot be read."""
+    image = reduced(path)
+    stream = io.BytesIO()
+    image.save(stream, format="PNG", optimize=False, compress_level=9)
+    encoded = base64.b64encode(stream.getvalue()).decode("ascii")
+    return Picture(f"data:image/png;base64,{encoded}", image.width, image.height)
+
+
+def reduced(path: Path) -> Image.Image:
+    """A PNG file's image with a palette of its own."""
+    try:
+        with Image.open(path) as image:
+            return image.convert("RGB").quantize(_COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    except (OSError, UnidentifiedImageError) as error:
+        found = " ".join(str(error).split())
+        raise InputError(str(path), found, "a PNG file", "delete the figures' folder and run again") from None

@@ -1,0 +1,120 @@
+"""What the report says of one platform, gathered from its results."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linepose import experiment_schemas, result_schemas
+from linepose.experiments.subsets import body_angles_rad
+from linepose.figures.repeatability import sigma_factor
+from linepose.figures.results import PlatformResults
+from linepose.observations import Survey
+from linepose.pose import POSE_COLUMNS
+from linepose.report.pose_tables import (
+    PoseNumber,
+    PoseWithCovariance,
+    euler_numbers,
+    quaternion,
+    rotation_vector_numbers,
+)
+from linepose.report.verdict import Evidence, Verdict, judge
+from linepose.residual_tables import alike_in_a_view
+from linepose.rotations import Floats
+
+
+@dataclass(frozen=True)
+class PlatformSummary:
+    """One platform's part of the report."""
+
+    name: str
+    description: str
+    noise_model: str
+    verdict: Verdict
+    rotation_vector: list[PoseNumber]
+    euler: list[PoseNumber]
+    quaternion: Floats
+    n_observations: int
+    n_accepted: int
+    neg_log_likelihood: float
+    simulated: bool
+
+
+def summarise(results: PlatformResults) -> PlatformSummary:
+    """The summary of a platform whose stages have all been run."""
+    samples = results.samples()[list(POSE_COLUMNS)].to_numpy()
+    estimate = PoseWithCovariance(results.pose("inliers"), np.cov(samples.T))
+    hand = PoseWithCovariance(results.platform.start_pose(), results.platform.start_covariance())
+    numbers = rotation_vector_numbers(estimate, hand, results.true_pose)
+    poses = results.table("pose", result_schemas.POSE).set_index("stage")
+    evidence = gather_evidence(results, numbers)
+    return PlatformSummary(
+        name=results.name,
+        description=results.platform.description or results.name,
+        noise_model=results.platform.noise_model,
+        verdict=judge(evidence),
+        rotation_vector=numbers,
+        euler=euler_numbers(estimate, hand, results.true_pose),
+        quaternion=quaternion(estimate.pose),
+        n_observations=evidence.n_observations,
+        n_accepted=evidence.n_accepted,
+        neg_log_likelihood=float(poses.loc["inliers", "neg_log_likelihood"]),
+        simulated=results.true_pose is not None,
+    )
+
+
+def gather_evidence(results: PlatformResults, numbers: list[PoseNumber]) -> Evidence:
+    """The numbers that the verdict rests on; `numbers` are the pose's six."""
+    optimum = results.table("optima", result_schemas.OPTIMA).set_index("stage").loc["inliers"]
+    chain = results.table("diagnostics", result_schemas.DIAGNOSTICS)
+    chain = chain[chain["stage"] == "inliers"]
+    outliers = results.table("outliers", result_schemas.OUTLIERS)
+    accepted = outliers[outliers["accepted"]]
+    worst = accepted.loc[accepted["error_px"].idxmax()]
+    residuals = results.table("residuals", result_schemas.RESIDUALS)
+    residuals = residuals[residuals["stage"] == "inliers"]
+    farthest = max(numbers, key=lambda number: abs(number.difference_sigmas))
+    wrong = max(numbers, key=lambda number: abs(number.error_sigmas or 0.0))
+    most_influential, influence = _influence(results)
+    return Evidence(
+        n_observations=int(outliers["n_observations"].max()),
+        n_accepted=len(accepted),
+        converged=bool(optimum["converged"]),
+        n_steps=int(results.samples()["step"].max()) + 1,
+        autocorrelation_time=float(chain["autocorrelation_time"].max()),
+        split_r_hat=float(chain["split_r_hat"].max()),
+        reduced_chi_square=float(optimum["reduced_chi_square"]),
+        alike_in_a_view=max(alike_in_a_view(residuals, column) for column in ("error_u_px", "error_v_px")),
+        tilt_spread_deg=tilt_spread_deg(results.survey().select(results.accepted())),
+        worst_observation=int(worst["observation"]),
+        worst_error_px=float(worst["error_px"]),
+        threshold_px=results.threshold_px,
+        hand_sigmas=abs(farthest.difference_sigmas),
+        hand_parameter=farthest.name,
+        undecided=tuple(number.name for number in numbers if number.sigma >= number.hand_sigma),
+        sigma_factor=_sigma_factor(results),
+        most_influential=most_influential,
+        influence=influence,
+        truth_sigmas=None if wrong.error_sigmas is None else abs(wrong.error_sigmas),
+        truth_parameter=wrong.name,
+    )
+
+
+def tilt_spread_deg(survey: Survey) -> float:
+    """RMS distance of the observations' (roll, pitch) from their mean, in degrees."""
+    tilt = np.degrees(body_angles_rad(survey)[:, :2])
+    return float(np.sqrt(np.mean(np.sum((tilt - tilt.mean(axis=0)) ** 2, axis=1))))
+
+
+def _sigma_factor(results: PlatformResults) -> float | None:
+    if not results.has("splits"):
+        return None
+    splits = results.table("splits", experiment_schemas.SPLITS)
+    return sigma_factor(splits) if splits["mahalanobis"].notna().any() else None
+
+
+def _influence(results: PlatformResults) -> tuple[int | None, float | None]:
+    if not results.has("leave_one_out"):
+        return None, None
+    table = results.table("leave_one_out", experiment_schemas.LEAVE_ONE_OUT)
+    most = table.loc[table["influence"].idxmax()]
+    return int(most["left_out"]), float(most["influence"])

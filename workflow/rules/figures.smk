@@ -1,0 +1,32 @@
+rule figures:
+    input:
+        observations="results/{platform}/observations.parquet",
+        outliers="results/{platform}/outliers.parquet",
+        samples="results/{platform}/mcmc",
+        pose="results/{platform}/pose.parquet",
+        diagnostics="results/{platform}/diagnostics.parquet",
+        uncertainty="results/{platform}/uncertainty.parquet",
+        residuals="results/{platform}/residuals.parquet",
+        points="results/{platform}/estimated_points.parquet",
+        experiments=drawn_from,
+    output:
+        report(
+            directory("results/{platform}/figures"),
+            patterns=["{figure}.png"],
+            caption="../report/figure.rst",
+            category="{platform}",
+            subcategory="Figures",
+            labels={"figure": "{figure}"},
+        ),
+    log:
+        "results/logs/{platform}/figures.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platform=lambda wildcards: PROJECT.platforms[wildcards.platform].model_dump(
+            mode="json"
+        ),
+        outliers=section("outliers"),
+        code=source_digest("linepose.figures.render"),
+    script:
+        "../../scripts/figures.py"

@@ -1,0 +1,34 @@
+rule report:
+    input:
+        results=reported,
+        samples=expand("results/{platform}/mcmc", platform=PLATFORMS),
+        figures=expand("results/{platform}/figures", platform=PLATFORMS),
+        regression="results/regression.parquet",
+        tables=(
+            expand("results/tables/table{number}.parquet", number=[2, 3, 4, 5])
+            if COMPARED
+            else []
+        ),
+    output:
+        report(
+            "results/report.html",
+            caption="../report/report.rst",
+            category="Report",
+            labels={"result": "summary of all platforms"},
+        ),
+    log:
+        "results/logs/report.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platforms={
+            name: PROJECT.platforms[name].model_dump(mode="json") for name in PLATFORMS
+        },
+        study=STUDY.model_dump(mode="json"),
+        code=[
+            source_digest("linepose.report.page"),
+            source_digest("linepose.report.summary"),
+        ],
+        templates=files_digest("report/templates"),
+    script:
+        "../../scripts/report.py"

@@ -1,0 +1,26 @@
+rule subsets:
+    input:
+        observations="results/{platform}/observations.parquet",
+        outliers="results/{platform}/outliers.parquet",
+        compiled="results/compiled.txt",
+    output:
+        "results/{platform}/subsets.parquet",
+    log:
+        "results/logs/{platform}/subsets.log",
+    conda:
+        "../../environment.yml"
+    threads: 2
+    params:
+        platform=settings,
+        subsets=experiment("subsets"),
+        file=platform_file,
+        search=section("search"),
+        sampling=section("sampling"),
+        seed=STUDY.seed,
+        code=[
+            source_digest("linepose.experiments.subsets"),
+            source_digest("linepose.experiments.accepted"),
+            source_digest("linepose.likelihood.models"),
+        ],
+    script:
+        "../../scripts/subsets.py"

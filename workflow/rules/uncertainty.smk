@@ -1,0 +1,14 @@
+rule uncertainty:
+    input:
+        optima="results/{platform}/optima.parquet",
+        poses="results/{platform}/pose.parquet",
+    output:
+        "results/{platform}/uncertainty.parquet",
+    log:
+        "results/logs/{platform}/uncertainty.log",
+    conda:
+        "../../environment.yml"
+    params:
+        code=source_digest("linepose.experiments.uncertainty"),
+    script:
+        "../../scripts/uncertainty.py"
