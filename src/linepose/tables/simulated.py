@@ -15,8 +15,8 @@ from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.tables.row import row
 from linepose.tables.truth_error import POSE, POSITION, ROTATION
 
-SIGMA_RELATIVE: Final = 0.40
-_SIMULATED: Final = "simulated"
+SIMULATED_RELATIVE: Final = 0.40
+SIMULATED: Final = "simulated"
 _LIMIT_SIGMAS: Final = 3.0
 _PARAMETERS: Final = {POSITION: 3, ROTATION: 3, POSE: 6}  # that each whole is made of
 _CORRELATED: Final = (
@@ -28,7 +28,7 @@ _CORRELATED: Final = (
 def sigma_rows(quantity: str, published: Mapping[str, Any], obtained: pd.Series) -> list[dict[str, Any]]:
     """Table 3's sigmas of one stage, to 40 %."""
     return [
-        row(f"{quantity}, {column}", p, obtained[column], SIGMA_RELATIVE * p, _SIMULATED)
+        row(f"{quantity}, {column}", p, obtained[column], SIMULATED_RELATIVE * p, SIMULATED)
         for column, p in zip(SIGMA_COLUMNS, published["sigma"], strict=True)
     ]
 
@@ -40,11 +40,11 @@ def fault_rows(
     removed, remaining = removal_order(outliers), stage_observations(outliers)["inliers"]
     planted = sorted(int(number) for number in truth.loc[truth["faulty"], "observation"].unique())
     rows = [
-        row(f"{name}, section 4, number of outliers", counts["outliers"], len(removed), 0, _SIMULATED),
-        row(f"{name}, section 4, number of inliers", counts["inliers"], len(remaining), 0, _SIMULATED),
+        row(f"{name}, section 4, number of outliers", counts["outliers"], len(removed), 0, SIMULATED),
+        row(f"{name}, section 4, number of inliers", counts["inliers"], len(remaining), 0, SIMULATED),
     ]
     return rows + [
-        row(f"{name}, planted fault {number} removed", number, number if number in removed else 0, 0, _SIMULATED)
+        row(f"{name}, planted fault {number} removed", number, number if number in removed else 0, 0, SIMULATED)
         for number in planted
     ]
 
@@ -59,7 +59,7 @@ def truth_rows(
     """
     errors = truth_error[truth_error["stage"] == stage].set_index("quantity")
     rows = [
-        row(f"{name}, error against truth, {column}", 0.0, errors.loc[column, "error"], _LIMIT_SIGMAS * p, _SIMULATED)
+        row(f"{name}, error against truth, {column}", 0.0, errors.loc[column, "error"], _LIMIT_SIGMAS * p, SIMULATED)
         for column, p in zip(POSE_COLUMNS, published["sigma"], strict=True)
     ]
     for column in (*POSE_COLUMNS, POSITION, ROTATION, POSE):
