@@ -7,16 +7,18 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from linepose.config.platform import Platform
 from linepose.figures.checks import stage_row
-from linepose.figures.scan import Intensity
 from linepose.observations import Survey, survey_from_table
 from linepose.outliers import stage_observations
 from linepose.pose import POSE_COLUMNS
 from linepose.result_schemas import OBSERVATIONS, OUTLIERS, POSE, SAMPLES
 from linepose.rotations import Floats
 from linepose.storage import read_table
+
+Intensity = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
