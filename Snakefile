@@ -18,6 +18,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/fetch.smk"
 include: "workflow/rules/compile.smk"
 include: "workflow/rules/check_data.smk"
+include: "workflow/rules/simulate.smk"
 include: "workflow/rules/extract.smk"
 include: "workflow/rules/associate.smk"
 include: "workflow/rules/reject_outliers.smk"
@@ -35,8 +36,10 @@ include: "workflow/rules/basin_summary.smk"
 include: "workflow/rules/mapping.smk"
 include: "workflow/rules/sensitivity.smk"
 include: "workflow/rules/experiments.smk"
-include: "workflow/rules/figures.smk"
+include: "workflow/rules/truth_error.smk"
 include: "workflow/rules/regression.smk"
+include: "workflow/rules/published_tables.smk"
+include: "workflow/rules/figures.smk"
 include: "workflow/rules/report.smk"
 
 
@@ -46,6 +49,8 @@ rule all:
         expand("results/{platform}/pose.parquet", platform=PLATFORMS),
         expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
         rules.experiments.input,
+        rules.published_tables.output if COMPARED else [],
+        expand("results/{platform}/truth_error.parquet", platform=PROJECT.simulated),
         "results/regression.parquet",
         "results/report.html",
         "results/logs/regression.passed",

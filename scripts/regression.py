@@ -1,13 +1,17 @@
 """Hold the results against the published numbers."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import pandas as pd
 from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
-    from linepose.result_schemas import NAVIGATION_SIGMA, OUTLIERS, POSE, REGRESSION
+    from linepose.experiment_schemas import BASIN_SUMMARY, REPEATABILITY, SUBSETS
+    from linepose.result_schemas import NAVIGATION_SIGMA, OUTLIERS, POSE, REGRESSION, TRUTH_ERROR
     from linepose.storage import read_table, write_csv, write_table
+    from linepose.tables.experiments_regression import basin_rows, table_rows
     from linepose.tables.regression import PlatformResults, regression_table
 
     published_as = snakemake.params.published_as
@@ -18,7 +22,19 @@ with stage(snakemake) as log:
         )
         for name, pose, outliers, sigma in files
     }
-    table = regression_table(read_yaml(Path(snakemake.input.published)), results, published_as)
+    known_truth = zip(snakemake.params.on_truth, snakemake.input.truth, snakemake.input.truth_error, strict=True)
+    for name, truth, error in known_truth:
+        results[name] = replace(results[name], truth=pd.read_parquet(truth), truth_error=read_table(error, TRUTH_ERROR))
+    published = read_yaml(Path(snakemake.input.published))
+    rows = []
+    for name, subsets, pairs in zip(
+        snakemake.params.compared, snakemake.input.subsets, snakemake.input.pairs, strict=True
+    ):
+        rows += table_rows(name, published, read_table(subsets, SUBSETS), read_table(pairs, REPEATABILITY))
+    for name, summary in zip(snakemake.params.swept, snakemake.input.basin, strict=True):
+        rows += basin_rows(name, published, read_table(summary, BASIN_SUMMARY))
+    stages = regression_table(published, results, published_as)
+    table = pd.concat([stages, pd.DataFrame(rows, columns=stages.columns)], ignore_index=True)
     write_table(table, snakemake.output.parquet, REGRESSION)
     write_csv(table, snakemake.output.csv)
     known = int((table["known_deviation"] & ~table["passed"]).sum())

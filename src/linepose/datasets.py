@@ -3,11 +3,14 @@
 import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Final
 
 import pooch
 import requests
 
 from linepose.errors import InputError
+
+_PATIENCE_S: Final = 5.0
 
 
 def find_dataset(name: str, files: Sequence[str], folders: Sequence[Path]) -> Path | None:
@@ -40,7 +43,8 @@ def check_dataset(folder: Path, sha256: Mapping[str, str | None]) -> dict[str, s
         path = folder / file
         if not path.is_file():
             raise InputError(str(path), "no such file", "a file of the data set", "restore it")
-        found[file] = hashlib.sha256(path.read_bytes()).hexdigest()
+        with path.open("rb") as data:
+            found[file] = hashlib.file_digest(data, "sha256").hexdigest()
         if expected is not None and found[file] != expected:
             raise InputError(
                 str(path),
@@ -49,6 +53,14 @@ def check_dataset(folder: Path, sha256: Mapping[str, str | None]) -> dict[str, s
                 "the file is altered or truncated: restore it from the source",
             )
     return found
+
+
+def can_be_reached(url: str) -> bool:
+    """Whether a server answers for this address, within a few seconds."""
+    try:
+        return requests.head(url, timeout=_PATIENCE_S, allow_redirects=True).ok
+    except (requests.RequestException, OSError):
+        return False
 
 
 def download_dataset(

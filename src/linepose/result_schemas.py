@@ -35,6 +35,7 @@ def flags(*names: str) -> list[pa.Field]:
 _POINT = [*whole_numbers("observation", "point", "time_us"), *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS)]
 
 POINTS: Final = pa.schema(_POINT)
+SCAN_POINTS: Final = pa.schema([*whole_numbers("observation", "point", "time_us"), *floats("u_px", "line")])
 OBSERVATIONS: Final = pa.schema([*_POINT, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
 OUTLIERS: Final = pa.schema(
     [
@@ -94,6 +95,14 @@ ESTIMATED_POINTS: Final = pa.schema(
 )
 FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
 NAVIGATION_SIGMA: Final = pa.schema(floats(*navigation.SIGMA_COLUMNS))
+TRUTH_ERROR: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("n_observations"),
+        *texts("quantity"),
+        *floats("error", "sigma", "error_in_sigmas"),
+    ]
+)
 REGRESSION: Final = pa.schema(
     [
         *texts("quantity"),

@@ -68,6 +68,7 @@ def test_coarser_tolerances_take_fewer_evaluations(gaussian, true_pose):
     assert coarse.n_evaluations < fine.n_evaluations
 
 
+@pytest.mark.filterwarnings("error")  # Powell's parabolas through infinite values warn, and lead anywhere
 def test_undefined_half_of_the_range_is_left_alone(function_likelihood):
     def negative(p):
         return np.where(p[:, 0] < -0.05, np.inf, np.sum((p / SIGMA) ** 2, axis=1))

@@ -11,6 +11,9 @@ rule associate:
     params:
         platform=settings,
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=source_digest("linepose.navigation"),
+        code=[
+            source_digest("linepose.navigation"),
+            source_digest("linepose.navigation_log"),
+        ],
     script:
         "../../scripts/associate.py"

@@ -1,15 +1,35 @@
+import os
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
+from snakemake.logging import logger
 
 from linepose.config.project import load_project
+from linepose.datasets import can_be_reached
 from linepose.errors import LineposeError
 from linepose.provenance import files_digest, source_digest
 
+
+def can_download(dataset):
+    """Whether the data set's server answers; asked once, because every job of a run reads this file anew."""
+    key = f"LINEPOSE_REACHED_{dataset.base_url}"
+    if key not in os.environ:
+        os.environ[key] = str(
+            int(can_be_reached(dataset.address(next(iter(dataset.sha256)))))
+        )
+    return os.environ[key] == "1"
+
+
 try:
-    PROJECT = load_project(config, Path())
+    PROJECT = load_project(config, Path(), can_download)
 except LineposeError as error:
     raise WorkflowError(str(error)) from None
+
+if PROJECT.unavailable and workflow.is_main_process:
+    logger.warning(
+        f"data set {', '.join(PROJECT.unavailable)}: not in {', '.join(PROJECT.study.data_folders)} and not to be "
+        f"downloaded; only the other platforms run: {', '.join(PROJECT.platforms)}"
+    )
 
 STUDY = PROJECT.study
 PLATFORMS = STUDY.platforms

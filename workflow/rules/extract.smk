@@ -1,6 +1,6 @@
 rule extract:
     input:
-        lambda wildcards: f"results/datasets/{PROJECT.platforms[wildcards.platform].source.dataset}.csv",
+        lambda wildcards: PROJECT.record(wildcards.platform),
     output:
         "results/{platform}/points.parquet",
     log:
@@ -10,6 +10,10 @@ rule extract:
     params:
         platform=settings,
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=source_digest("linepose.extraction.labelled_views"),
+        code=[
+            source_digest("linepose.extraction.labelled_views"),
+            source_digest("linepose.extraction.scan_survey"),
+            source_digest("linepose.extraction.labels"),
+        ],
     script:
         "../../scripts/extract.py"

@@ -3,14 +3,38 @@ REGRESSED = {
     for key in PLATFORMS
     if PROJECT.platforms[key].published
 }
+REGRESSED_ON_TRUTH = [key for key in REGRESSED if key in PROJECT.simulated]
+
+# Platforms with all experiments that the paper has numbers of.
+COMPARED = [
+    key
+    for key, published in REGRESSED.items()
+    if published == "ladybird"
+    and {"high", "low"} <= set(PROJECT.platforms[key].experiments.subsets)
+    and PROJECT.platforms[key].experiments.repeatability
+    and PROJECT.platforms[key].experiments.repeatability.first
+]
+SWEPT = [
+    key
+    for key in COMPARED
+    if PROJECT.platforms[key].experiments.basin
+    and "powell" in PROJECT.platforms[key].experiments.basin.optimisers
+]
 
 
 rule regression:
     input:
         published=STUDY.published,
+        subsets=expand("results/{platform}/subsets.parquet", platform=COMPARED),
+        pairs=expand("results/{platform}/repeatability.parquet", platform=COMPARED),
+        basin=expand("results/{platform}/basin_summary.parquet", platform=SWEPT),
         pose=expand("results/{platform}/pose.parquet", platform=REGRESSED),
         outliers=expand("results/{platform}/outliers.parquet", platform=REGRESSED),
         sigma=expand("results/{platform}/navigation_sigma.parquet", platform=REGRESSED),
+        truth=expand("results/{platform}/truth.parquet", platform=REGRESSED_ON_TRUTH),
+        truth_error=expand(
+            "results/{platform}/truth_error.parquet", platform=REGRESSED_ON_TRUTH
+        ),
     output:
         parquet="results/regression.parquet",
         csv=report(
@@ -25,7 +49,10 @@ rule regression:
         "../../environment.yml"
     params:
         published_as=REGRESSED,
-        code=source_digest("linepose.tables.regression"),
+        compared=COMPARED,
+        swept=SWEPT,
+        on_truth=REGRESSED_ON_TRUTH,
+        code=source_digest("linepose.tables.experiments_regression"),
     script:
         "../../scripts/regression.py"
 

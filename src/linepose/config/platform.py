@@ -1,11 +1,21 @@
 """The platform file: one camera on one vehicle, what it recorded, and how its data are to be read."""
 
+import glob
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
 import yaml
-from pydantic import Field, PositiveFloat, PositiveInt, field_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PositiveFloat,
+    PositiveInt,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
 
 from linepose.camera import Camera, CameraSigmas
 from linepose.config.experiments import ExperimentsSection
@@ -14,6 +24,7 @@ from linepose.config.schema import Section, validated
 from linepose.errors import InputError
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
 from linepose.rotations import Floats
+from linepose.simulate.settings import SimulationSettings, settings_from_dict
 
 Triple = tuple[float, float, float]
 NonNegative = Annotated[float, Field(ge=0)]
@@ -42,6 +53,11 @@ class CameraSection(Section):
     k2: float = Field(0.0, description="Second radial distortion coefficient (no unit).")
     sigmas: SigmasSection = Field(SigmasSection(), description="One standard deviation of each.")
 
+    def intrinsics(self) -> Camera:
+        """The camera that geometry works with."""
+        values = self.model_dump()
+        return Camera(**(values | {"sigmas": CameraSigmas(**values["sigmas"])}))
+
 
 class HandMeasuredSection(Section):
     """The camera's pose on the vehicle as read from a tape measure: the start of the search."""
@@ -62,6 +78,15 @@ class NavigationSection(Section):
         1.0, description="Largest time between a point and the covariance used for it (s)."
     )
 
+    maximum_pose_gap_s: PositiveFloat = Field(
+        0.1, description="Largest gap in a raw log around a point's time (s); for scans only."
+    )
+    association: Literal["nearest", "interpolate"] = Field(
+        "nearest",
+        description="Pose of a point from a raw log: of the nearest time stamp, as in the paper, or interpolated; "
+        "for scans only.",
+    )
+
     @field_validator("covariance_columns")
     @classmethod
     def _are_different(cls, columns: tuple[int, int, int]) -> tuple[int, int, int]:
@@ -80,6 +105,51 @@ class LabelledViewsSection(Section):
     step: PositiveInt = Field(1, description="Every how many-th view file is used.")
     covariances: str = Field("nav_covs.csv", description="File of the navigation covariances: time (us), 12x12.")
 
+    def files(self, folder: Path) -> set[Path]:
+        """Every file that is read, of a data set in this folder."""
+        return {*folder.glob(self.views), folder / self.covariances}
+
+
+class ScansSection(Section):
+    """Scan images with a time stamp for each line, and the navigation system's raw log."""
+
+    kind: Literal["scans"] = Field(description="Scan images, one a view of the pattern.")
+    dataset: str | None = Field(
+        None, description="Data set, as named in the study's configuration; none where the platform is simulated."
+    )
+    scans: str = Field(
+        "scans/*.hdr",
+        description="Scans (ENVI headers, PNG, TIFF) in the order of the observations, each with NAME-times.csv.",
+    )
+    left_out: tuple[PositiveInt, ...] = Field((), description="Numbers of observations that are not used.")
+    points: Literal["labels", "detection"] = Field(
+        "labels", description="Pattern points from approximate labels, or found without any."
+    )
+    labels: str = Field("labels.csv", description="File of the labels: observation, point, u_px, line.")
+    refinement: Literal["centroid", "peak"] = Field(
+        "centroid",
+        description="Centre of a dot: intensity-weighted mean, or the enlarged patch's peak as in the paper.",
+    )
+    navigation: str = Field(
+        "navigation.parquet", description="Raw navigation log, Parquet or CSV: time_us, north_m, ..., yaw_rad."
+    )
+    covariances: str = Field("covariances.csv", description="File of the navigation covariances: time (us), 12x12.")
+
+    def files(self, folder: Path) -> set[Path]:
+        """Every file that is read, of a data set in this folder."""
+        scans = list(folder.glob(self.scans))
+        beside = {path for scan in scans for path in scan.parent.glob(f"{glob.escape(scan.stem)}[.-]*")}
+        labels = {folder / self.labels} if self.points == "labels" else set()
+        return {*beside, *labels, folder / self.navigation, folder / self.covariances}
+
+
+def _simulation(values: Any) -> Any:
+    return settings_from_dict(values, "simulation") if isinstance(values, Mapping) else values
+
+
+# closed by its own check; the keys, with units in their names, are the fields of the settings' classes
+Simulation = Annotated[SimulationSettings, BeforeValidator(_simulation), WithJsonSchema({"type": "object"})]
+
 
 class Platform(Section):
     """One platform: a camera on a vehicle and what it recorded."""
@@ -88,9 +158,14 @@ class Platform(Section):
     camera: CameraSection = Field(description="Intrinsic parameters.")
     hand_measured: HandMeasuredSection = Field(description="The pose from the tape measure.")
     navigation: NavigationSection = Field(NavigationSection(), description="The navigation system.")
-    source: LabelledViewsSection = Field(description="Where the observations come from.")
+    source: LabelledViewsSection | ScansSection = Field(
+        description="Where the observations come from.", discriminator="kind"
+    )
+    simulation: Simulation | None = Field(
+        None, description="A simulated survey with a known truth: keys and units in linepose.simulate.settings."
+    )
     noise_model: Literal["published"] = Field("published", description="The likelihood's model of the noise.")
-    published: Literal["ladybird", "ladybird_attitude"] | None = Field(
+    published: Literal["ladybird", "ladybird_attitude", "ladybird_simulated", "shrimp_simulated"] | None = Field(
         None, description="The published numbers that the results are held against, if any."
     )
 
@@ -99,10 +174,15 @@ class Platform(Section):
         ExperimentsSection(), description="Experiments on the accepted observations."
     )
 
+    @model_validator(mode="after")
+    def _has_one_origin(self) -> "Platform":
+        if (self.simulation is None) == (self.source.dataset is None):
+            raise ValueError("either source.dataset, or a simulation with a source of kind scans")
+        return self
+
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""
-        values = self.camera.model_dump()
-        return Camera(**(values | {"sigmas": CameraSigmas(**values["sigmas"])}))
+        return self.camera.intrinsics()
 
     def start_pose(self) -> Floats:
         """The hand-measured pose with a rotation vector (6,)."""

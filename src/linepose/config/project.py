@@ -1,6 +1,6 @@
 """All that a run is configured by: the study, its platforms, its data sets and the folders they are in."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,12 +17,19 @@ class Project:
 
     `platforms` has those of the study first, then those that only a sensitivity experiment compares with.
     A data set that `datasets` does not list has no sums: it is the user's own, found in a data folder.
+    `unavailable` names the data sets that can neither be found nor downloaded; their platforms are not in `platforms`.
     """
 
     study: Study
     platforms: Mapping[str, Platform]
     datasets: Mapping[str, DatasetSection]
     folders: Mapping[str, Path]
+    unavailable: tuple[str, ...] = ()
+
+    @property
+    def simulated(self) -> list[str]:
+        """Names of the platforms with a known truth."""
+        return [name for name, platform in self.platforms.items() if platform.simulation is not None]
 
     def files(self, dataset: str) -> list[Path]:
         """Every file of a data set that its platforms read."""
@@ -30,8 +37,7 @@ class Project:
         if dataset in self.datasets:
             return [folder / file for file in self.datasets[dataset].sha256]
         sources = [platform.source for platform in self.platforms.values() if platform.source.dataset == dataset]
-        views = {path for source in sources for path in folder.glob(source.views)}
-        return sorted(views | {folder / source.covariances for source in sources})
+        return sorted({path for source in sources for path in source.files(folder)})
 
     def sums(self, dataset: str) -> dict[str, str | None]:
         """SHA-256 of each file of a data set by its path there, None for the user's own."""
@@ -41,14 +47,23 @@ class Project:
         return {path: known.get(path) for path in paths}
 
     def folder(self, platform: str) -> Path:
-        """Folder of the platform's data set."""
-        return self.folders[self.platforms[platform].source.dataset]
+        """Folder of what the platform recorded: its data set's, or that of the simulated survey."""
+        dataset = self.platforms[platform].source.dataset
+        return Path(f"results/{platform}/simulated") if dataset is None else self.folders[dataset]
+
+    def record(self, platform: str) -> str:
+        """The result that stands for all that the platform recorded: the checked sums, or the simulated survey."""
+        dataset = self.platforms[platform].source.dataset
+        return f"results/{platform}/simulated" if dataset is None else f"results/datasets/{dataset}.csv"
 
 
-def load_project(values: dict[str, Any], root: Path) -> Project:
+def load_project(
+    values: dict[str, Any], root: Path, can_download: Callable[[DatasetSection], bool] = lambda _: True
+) -> Project:
     """The project that config.yaml's values and the files they name describe.
 
-    Raises InputError for the first key, file or name that is wrong.
+    A data set that is nowhere and that `can_download` denies is unavailable: its platforms are left out, as long as
+    others remain. Raises InputError for the first key, file or name that is wrong.
     """
     study = check_study(values)
     platforms = {name: load_platform(root / study.platforms_folder, name) for name in study.platforms}
@@ -58,8 +73,11 @@ def load_project(values: dict[str, Any], root: Path) -> Project:
     datasets = {name: load_dataset(root / sums) for name, sums in study.datasets.items()}
     searched = [root / folder for folder in study.data_folders]
     folders = {}
+    absent = []
     for name, platform in platforms.items():
         dataset = platform.source.dataset
+        if dataset is None or dataset in folders:
+            continue
         known = list(datasets[dataset].sha256) if dataset in datasets else []
         found = find_dataset(dataset, known, searched)
         if found is None and dataset not in datasets:
@@ -70,4 +88,9 @@ def load_project(values: dict[str, Any], root: Path) -> Project:
                 f"put them in {searched[0] / dataset}",
             )
         folders[dataset] = found or searched[0] / dataset
+        if found is None and not can_download(datasets[dataset]):
+            absent.append(dataset)
+    remaining = {name: platform for name, platform in platforms.items() if platform.source.dataset not in absent}
+    if absent and remaining:
+        return Project(study, remaining, datasets, folders, tuple(absent))
     return Project(study, platforms, datasets, folders)

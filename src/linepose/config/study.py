@@ -19,6 +19,10 @@ class DatasetSection(Section):
     sha256: dict[str, str] = Field(description="SHA-256 of each file, by its path in the data set.")
     urls: dict[str, str] = Field(default_factory=dict, description="Addresses of files that stand elsewhere.")
 
+    def address(self, file: str) -> str:
+        """Where a file of the data set can be downloaded from."""
+        return self.urls.get(file, self.base_url + file)
+
 
 class SearchSection(Section):
     """Powell's method from the hand-measured pose."""

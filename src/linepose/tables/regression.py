@@ -1,7 +1,8 @@
 """The published numbers beside the obtained ones: which hold, which do not, and which are known not to."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -12,6 +13,8 @@ from linepose.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
 from linepose.outliers import removal_order, stage_observations
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS, rotation_vector_covariance, rotation_vector_pose
 from linepose.rotations import Floats
+from linepose.tables.row import row
+from linepose.tables.simulated import fault_rows, sigma_rows, truth_rows
 
 NAVIGATION_RELATIVE: Final = 0.02
 POSE_ABSOLUTE: Final = 0.0015
@@ -23,29 +26,16 @@ _STAGES: Final = {"all": "all_25", "inliers": "inliers_16", "hand_measured": "ha
 
 @dataclass(frozen=True)
 class PlatformResults:
-    """What the regression reads of one platform: its poses, outlier stages and median navigation sigmas."""
+    """What the regression reads of one platform: its poses, outlier stages and median navigation sigmas.
+
+    Of a simulated one also the truth and how far the estimate is from it; both are empty for the others.
+    """
 
     pose: pd.DataFrame
     outliers: pd.DataFrame
     navigation_sigma: pd.DataFrame
-
-
-def row(
-    quantity: str, published: float, obtained: float, tolerance: float, note: str = "", known_deviation: bool = False
-) -> dict[str, Any]:
-    """One number: published, obtained, and whether they differ by no more than the tolerance.
-
-    `known_deviation` marks a published number that does not follow from the data; `note` says why.
-    """
-    return {
-        "quantity": quantity,
-        "published": float(published),
-        "obtained": float(obtained),
-        "tolerance": float(tolerance),
-        "passed": bool(abs(obtained - published) <= tolerance),
-        "known_deviation": known_deviation,
-        "note": note,
-    }
+    truth: pd.DataFrame = field(default_factory=pd.DataFrame)
+    truth_error: pd.DataFrame = field(default_factory=pd.DataFrame)
 
 
 def navigation_rows(name: str, published: Sequence[float], sigma: pd.DataFrame) -> list[dict[str, Any]]:
@@ -187,7 +177,26 @@ def shrimp_hand_measured_rows(published: Mapping[str, Any]) -> list[dict[str, An
     return hand_measured_rows("shrimp", table3, rotation_vector_pose(euler_pose), sigma, _SHRIMP_DEVIATION)
 
 
-ROWS_OF: Final = {"ladybird": ladybird_rows, "ladybird_attitude": attitude_rows}
+def simulated_rows(key: str, name: str, published: Mapping[str, Any], results: PlatformResults) -> list[dict[str, Any]]:
+    """A simulated platform beside the one of the paper that it is like (`key`), and beside its own truth."""
+    table3, counts = published["table3"][key], published["section4"][key]
+    inliers = table3[f"inliers_{counts['inliers']}"]
+    poses = results.pose.set_index("stage")
+    return [
+        *navigation_rows(name, published["table2"][key], results.navigation_sigma),
+        *fault_rows(name, counts, results.truth, results.outliers),
+        *sigma_rows(f"{name}, Table 3, all", table3[f"all_{counts['observations']}"], poses.loc["all"]),
+        *sigma_rows(f"{name}, Table 3, inliers", inliers, poses.loc["inliers"]),
+        *truth_rows(name, inliers, results.truth_error),
+    ]
+
+
+ROWS_OF: Final[dict[str, Callable[[str, Mapping[str, Any], PlatformResults], list[dict[str, Any]]]]] = {
+    "ladybird": ladybird_rows,
+    "ladybird_attitude": attitude_rows,
+    "ladybird_simulated": partial(simulated_rows, "ladybird"),
+    "shrimp_simulated": partial(simulated_rows, "shrimp"),
+}
 
 
 def regression_table(

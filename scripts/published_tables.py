@@ -1,0 +1,29 @@
+"""Put the paper's Tables 2-5 and the obtained numbers side by side."""
+
+from pathlib import Path
+
+from adapter import stage
+
+with stage(snakemake) as log:
+    from linepose.config.platform import read_yaml
+    from linepose.experiment_schemas import PUBLISHED_NAVIGATION, PUBLISHED_POSES, REPEATABILITY, SUBSETS
+    from linepose.result_schemas import NAVIGATION_SIGMA, POSE
+    from linepose.storage import read_table, whole_file, write_csv, write_table
+    from linepose.tables.published import markdown, published_tables
+
+    tables = published_tables(
+        snakemake.params.platform,
+        read_yaml(Path(snakemake.input.published)),
+        read_table(snakemake.input.sigma, NAVIGATION_SIGMA),
+        read_table(snakemake.input.pose, POSE),
+        read_table(snakemake.input.subsets, SUBSETS),
+        read_table(snakemake.input.repeatability, REPEATABILITY),
+    )
+    folder = Path(snakemake.params.folder)
+    for name, table in tables.items():
+        write_table(table, folder / f"{name}.parquet", PUBLISHED_NAVIGATION if name == "table2" else PUBLISHED_POSES)
+        write_csv(table, folder / f"{name}.csv")
+        with whole_file(folder / f"{name}.md") as path:
+            path.write_text(markdown(table, f"Table {name[-1]}, published and obtained"), encoding="utf-8")
+    worst = max(table["difference_sigmas"].abs().max() for table in tables.values() if "difference_sigmas" in table)
+    log.info("largest difference of a pose: %.2f published sigmas", worst)

@@ -1,0 +1,17 @@
+"""Make what a simulated platform records, and keep the truth aside."""
+
+from pathlib import Path
+
+from adapter import stage
+
+with stage(snakemake) as log:
+    from linepose.config.platform import CameraSection
+    from linepose.simulate.record import write_survey
+    from linepose.simulate.settings import settings_from_dict
+
+    camera = CameraSection.model_validate(snakemake.params.camera).intrinsics()
+    settings = settings_from_dict(snakemake.params.simulation)
+    folder = Path(snakemake.output.folder)
+    write_survey(folder, camera, settings)
+    (folder / "truth.parquet").replace(snakemake.output.truth)
+    log.info("%d scans in %s", len(settings.passes), folder / "scans")

@@ -1,0 +1,109 @@
+"""From scans to observed points: by labels that are refined, or by detection without any."""
+
+import logging
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from linepose.errors import InputError
+from linepose.extraction.detect import detect
+from linepose.extraction.labels import check_within
+from linepose.extraction.refine import Refine, refine_points
+from linepose.extraction.scans import Scan, read_scan
+from linepose.rotations import Floats
+
+_FEWEST_OBSERVATIONS: Final = 2
+
+log = logging.getLogger(__name__)
+
+
+def select_scans(folder: Path, pattern: str, left_out: Sequence[int]) -> dict[int, Path]:
+    """Scan files by observation number: those of the folder in the order of their names, counted from 1."""
+    paths = sorted(folder.glob(pattern))
+    if not paths:
+        remedy = "correct source.scans, or put the scans there"
+        raise InputError(str(folder / pattern), "no file", "one scan an observation", remedy)
+    unknown = sorted(set(left_out) - set(range(1, len(paths) + 1)))
+    if unknown:
+        raise InputError("source.left_out", f"observation {unknown[0]}", f"1 to {len(paths)}", "remove it")
+    return {number: path for number, path in enumerate(paths, start=1) if number not in left_out}
+
+
+def refined_points(scans: Mapping[int, Path], labels: pd.DataFrame, refine: Refine, n_pixels: int) -> pd.DataFrame:
+    """Points of every labelled scan, refined from the labels; columns as in `result_schemas.SCAN_POINTS`.
+
+    Raises InputError naming a label outside its image, or one with no dot near it.
+    """
+    tables = []
+    for number, path in scans.items():
+        mine = labels[labels["observation"] == number]
+        if mine.empty:
+            log.warning("%s: no label: left out", path)
+            continue
+        scan = _read(path, n_pixels)
+        check_within(mine, scan, str(path))
+        found = refine_points(refine, scan.intensity, mine[["u_px", "line"]])
+        for row in np.flatnonzero(np.isnan(found[:, 0]))[:1]:
+            label = mine.iloc[row]
+            raise InputError(
+                f"{path}: label of observation {number}, point {label['point']:g}",
+                f"no dot near pixel {label['u_px']:g}, line {label['line']:g}",
+                "a bright dot on dark print",
+                "correct or remove the label",
+            )
+        tables.append(_table(number, scan, mine["point"].to_numpy(), found))
+    return _joined(tables, len(scans))
+
+
+def detected_points(scans: Mapping[int, Path], refine: Refine, n_pixels: int) -> pd.DataFrame:
+    """Points of every scan in which the board and its ids are found; columns as in `result_schemas.SCAN_POINTS`.
+
+    A scan whose ids are in doubt is left out with a warning. Raises InputError naming a scan without a board.
+    """
+    tables = []
+    for number, path in scans.items():
+        scan = _read(path, n_pixels)
+        found = detect(scan, refine)
+        if not found.board_found:
+            remedy = f"add {number} to source.left_out, or label the scan"
+            raise InputError(str(path), found.doubt, "a scan of the whole board", remedy)
+        if found.doubt:
+            log.warning("observation %d (%s) is left out: %s", number, path.name, found.doubt)
+            continue
+        tables.append(_table(number, scan, found.point, np.stack([found.u_px, found.line], axis=-1)))
+    return _joined(tables, len(scans))
+
+
+def _read(path: Path, n_pixels: int) -> Scan:
+    scan = read_scan(path)
+    if scan.intensity.shape[1] != n_pixels:
+        found, expected = f"{scan.intensity.shape[1]} pixels a line", f"{n_pixels}, as camera.n_pixels says"
+        raise InputError(str(path), found, expected, "correct camera.n_pixels, or restore the scan")
+    return scan
+
+
+def _table(number: int, scan: Scan, point: np.ndarray, position: Floats) -> pd.DataFrame:
+    return pd.DataFrame(
+        {
+            "observation": number,
+            "point": point,
+            "time_us": scan.time_at(position[:, 1]),
+            "u_px": position[:, 0],
+            "line": position[:, 1],
+        }
+    )
+
+
+def _joined(tables: list[pd.DataFrame], n_scans: int) -> pd.DataFrame:
+    tables = [table for table in tables if len(table)]
+    if len(tables) < _FEWEST_OBSERVATIONS:
+        raise InputError(
+            "extraction",
+            f"{len(tables)} of {n_scans} scans with known points",
+            f"at least {_FEWEST_OBSERVATIONS}",
+            "add scans of the whole board, or label them",
+        )
+    return pd.concat(tables, ignore_index=True)

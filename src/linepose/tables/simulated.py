@@ -1,0 +1,73 @@
+"""Published numbers beside those of a simulated survey, and its estimates beside the truth.
+
+What is simulated is alike to the field survey in layout and reported sigmas, not the same: tolerances are wide.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+import pandas as pd
+
+from linepose.outliers import removal_order, stage_observations
+from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.tables.row import row
+from linepose.tables.truth_error import POSE, POSITION, ROTATION
+
+SIGMA_RELATIVE: Final = 0.40
+_SIMULATED: Final = "simulated"
+_LIMIT_SIGMAS: Final = 3.0
+_CORRELATED: Final = (
+    "simulated; the likelihood takes the points of a view as independent, their navigation errors are alike: "
+    "its sigmas are too small"
+)
+
+
+def sigma_rows(quantity: str, published: Mapping[str, Any], obtained: pd.Series) -> list[dict[str, Any]]:
+    """Table 3's sigmas of one stage, to 40 %."""
+    return [
+        row(f"{quantity}, {column}", p, obtained[column], SIGMA_RELATIVE * p, _SIMULATED)
+        for column, p in zip(SIGMA_COLUMNS, published["sigma"], strict=True)
+    ]
+
+
+def fault_rows(
+    name: str, counts: Mapping[str, int], truth: pd.DataFrame, outliers: pd.DataFrame
+) -> list[dict[str, Any]]:
+    """Section 4's counts, and whether exactly the observations with planted faults are removed."""
+    removed, remaining = removal_order(outliers), stage_observations(outliers)["inliers"]
+    planted = sorted(int(number) for number in truth.loc[truth["faulty"], "observation"].unique())
+    rows = [
+        row(f"{name}, section 4, number of outliers", counts["outliers"], len(removed), 0, _SIMULATED),
+        row(f"{name}, section 4, number of inliers", counts["inliers"], len(remaining), 0, _SIMULATED),
+    ]
+    return rows + [
+        row(f"{name}, planted fault {number} removed", number, number if number in removed else 0, 0, _SIMULATED)
+        for number in planted
+    ]
+
+
+def truth_rows(
+    name: str, published: Mapping[str, Any], truth_error: pd.DataFrame, stage: str = "inliers"
+) -> list[dict[str, Any]]:
+    """The inliers' error against the truth: each parameter to three published sigmas, and over its own sigma to three.
+
+    An error beyond three of its own sigmas is a known deviation of the paper's likelihood, and says why.
+    """
+    errors = truth_error[truth_error["stage"] == stage].set_index("quantity")
+    rows = [
+        row(f"{name}, error against truth, {column}", 0.0, errors.loc[column, "error"], _LIMIT_SIGMAS * p, _SIMULATED)
+        for column, p in zip(POSE_COLUMNS, published["sigma"], strict=True)
+    ]
+    for column in (*POSE_COLUMNS, POSITION, ROTATION, POSE):
+        ratio = float(errors.loc[column, "error_in_sigmas"])
+        rows.append(
+            row(
+                f"{name}, error against truth in sigmas, {column}",
+                0.0,
+                ratio,
+                _LIMIT_SIGMAS,
+                _CORRELATED,
+                known_deviation=abs(ratio) > _LIMIT_SIGMAS,
+            )
+        )
+    return rows

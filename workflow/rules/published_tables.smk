@@ -1,0 +1,23 @@
+rule published_tables:
+    input:
+        published=STUDY.published,
+        sigma=f"results/{COMPARED[0]}/navigation_sigma.parquet" if COMPARED else [],
+        pose=f"results/{COMPARED[0]}/pose.parquet" if COMPARED else [],
+        subsets=f"results/{COMPARED[0]}/subsets.parquet" if COMPARED else [],
+        repeatability=f"results/{COMPARED[0]}/repeatability.parquet" if COMPARED else [],
+    output:
+        expand(
+            "results/tables/table{number}.{kind}",
+            number=[2, 3, 4, 5],
+            kind=["parquet", "csv", "md"],
+        ),
+    log:
+        "results/logs/published_tables.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platform=COMPARED[0] if COMPARED else "",
+        folder="results/tables",
+        code=source_digest("linepose.tables.published"),
+    script:
+        "../../scripts/published_tables.py"

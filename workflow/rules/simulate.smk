@@ -1,0 +1,17 @@
+rule simulate:
+    output:
+        folder=directory("results/{platform}/simulated"),
+        truth="results/{platform}/truth.parquet",
+    log:
+        "results/logs/{platform}/simulate.log",
+    wildcard_constraints:
+        platform="|".join(PROJECT.simulated) or "[^\\s\\S]",
+    conda:
+        "../../environment.yml"
+    threads: 2
+    params:
+        camera=lambda wildcards: settings(wildcards)["camera"],
+        simulation=lambda wildcards: settings(wildcards)["simulation"],
+        code=source_digest("linepose.simulate.record"),
+    script:
+        "../../scripts/simulate.py"
