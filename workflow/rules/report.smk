@@ -18,7 +18,11 @@ rule report:
         samples=expand("results/{platform}/mcmc", platform=PLATFORMS),
         figures=expand("results/{platform}/figures", platform=PLATFORMS),
         regression="results/regression.parquet",
-        tables=[],
+        tables=[
+            file
+            for file in (rules.published_tables.output if COMPARED else [])
+            if file.endswith(".parquet")
+        ],
     output:
         report(
             "results/report.html",

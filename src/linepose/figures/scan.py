@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from linepose.errors import InputError
 from linepose.figures.checks import usable_rows
-from linepose.figures.results import Intensity
 from linepose.figures.style import HALF_PAGE_IN, RED, blank_figure, few_ticks, styled
+
+Intensity = NDArray[np.float32]
 
 _COLUMNS = ("point", "u_px", "line")
 _CONTRAST = (0.005, 0.995)  # quantiles shown as black and white
