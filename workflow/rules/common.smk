@@ -59,30 +59,6 @@ def platform_file(wildcards):
     return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
 
 
-def others(wildcards):
-    """Platforms that the sensitivity experiment compares with."""
-    return PROJECT.platforms[wildcards.platform].experiments.sensitivity.platforms
-
-
-def asked_for(platform):
-    """The experiments' results that a platform's file asks for."""
-    experiments = PROJECT.platforms[platform].experiments
-    repeatability = experiments.repeatability
-    asked = {
-        "uncertainty": True,
-        "subsets": experiments.subsets,
-        "repeatability": repeatability and repeatability.first,
-        "splits": repeatability and repeatability.n_splits,
-        "leave_one_out": repeatability,
-        "basin_summary": experiments.basin,
-        "mapping_summary": experiments.mapping,
-        "sensitivity": experiments.sensitivity,
-    }
-    return [
-        f"results/{platform}/{key}.parquet" for key, value in asked.items() if value
-    ]
-
-
 def section(key):
     """What config.yaml says under this key, as a rule's parameter."""
     return getattr(STUDY, key).model_dump(mode="json")
