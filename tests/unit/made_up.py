@@ -53,7 +53,7 @@ def observations() -> pd.DataFrame:
     rows = []
     for number in range(1, N_OBSERVATIONS + 1):
         bearing = 2 * np.pi * number / N_OBSERVATIONS
-        position = ORIGIN + [3 * np.cos(bearing), 3 * np.sin(bearing), -1.0]
+        position = ORIGIN + np.array([3 * np.cos(bearing), 3 * np.sin(bearing), -1.0])
         euler = [np.radians(5.0) * (number % 2), 0.01, bearing]
         for point in range(len(POINTS)):
             rows.append(
