@@ -20,7 +20,7 @@ compare between parameters of one survey, not between surveys.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -39,6 +39,7 @@ from linepose.rotations import Floats
 LEVEL_NAMES: Final = ("log_shared_level", "log_white_level", "log_pixel_level")
 SHARED_PARAMETERS: Final = (*POSE_COLUMNS, *LEVEL_NAMES, "principal_point_px", "focal_length_m")
 SEARCH_SIGMAS: Final = 3.0  # of the prior, on either side: where the priors' parameters are searched
+SCATTER_SIGMAS: Final = 0.03  # of the prior: where walkers of the priors' parameters start
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,15 @@ class SharedPriors:
 
     level_median: float = 0.5
     level_log_sigma: float = 1.5
+
+
+class _Fit(NamedTuple):
+    """The marginal, the lines linearised at its points, and the weights of views (N,) and lines (L,)."""
+
+    marginal: Marginal
+    lines: Lines
+    view_weight: Floats
+    line_weight: Floats
 
 
 class SharedLikelihood(Likelihood):
@@ -64,7 +74,6 @@ class SharedLikelihood(Likelihood):
         _check_scales(camera, self.priors)
         self._arrays, self._points = shared_arrays(survey)
         self._fixed = FixedOptics(camera.pixel_pitch_m, camera.k1, camera.k2, camera.sigmas.u_px, camera.sigmas.v_px)
-        self._unit_weights = np.ones(survey.n_observations), np.ones(len(self._arrays.u_px))
         log_median, log_sigma = np.log(self.priors.level_median), self.priors.level_log_sigma
         self._prior_centre = np.array([*[log_median] * 3, camera.principal_point_px, camera.focal_length_m])
         self._prior_sigma = np.array([*[log_sigma] * 3, camera.sigmas.principal_point_px, camera.sigmas.focal_length_m])
@@ -88,8 +97,11 @@ class SharedLikelihood(Likelihood):
         return np.concatenate([super().half_widths(translation_m, rotation_rad), SEARCH_SIGMAS * self._prior_sigma])
 
     def scatter(self, translation_m: float, rotation_rad: float) -> Floats:
-        """Sigma (11,) with which walkers are scattered: a third of the prior's beyond the pose."""
-        return np.concatenate([super().scatter(translation_m, rotation_rad), self._prior_sigma / 3])
+        """Sigma (11,) with which walkers are scattered: narrower than any posterior beyond the pose.
+
+        The pixel level's posterior is a fortieth of its prior; walkers that start far outside come in late.
+        """
+        return np.concatenate([super().scatter(translation_m, rotation_rad), SCATTER_SIGMAS * self._prior_sigma])
 
     def log_likelihoods(self, parameters: ArrayLike) -> Floats:
         """Log-density of each row; (K, 11) to (K,), the same on any number of cores."""
@@ -118,20 +130,19 @@ class SharedLikelihood(Likelihood):
         the points given the parameters, NaN with `point_m` for points that are left out. Raises EstimationError at
         parameters for which the model is undefined.
         """
-        vector = self._vector(parameters)
-        result, lines = self._linearised(vector)
-        shape = self.survey.u_px.shape
+        fit = self._fit(self._vector(parameters))
+        shape, lines = self.survey.u_px.shape, fit.lines
         row, point = self._arrays.line_view, self._points[self._arrays.line_point]
         error_uv, error, sigma = np.full((*shape, 2), np.nan), np.full(shape, np.nan), np.full(shape, np.nan)
         length = np.linalg.norm(lines.residual_px, axis=1)
         direction = lines.residual_px / np.where(length > 0, length, 1.0)[:, None]
-        covariance = self._line_covariance(lines)
+        covariance = self._line_covariance(fit)
         error_uv[row, point], error[row, point] = lines.residual_px, length
         sigma[row, point] = np.sqrt(np.einsum("li,lij,lj->l", direction, covariance, direction))
         points = np.full((shape[1], 3), np.nan)
-        points[self._points] = result.points_m
+        points[self._points] = fit.marginal.points_m
         point_covariance = np.full((shape[1], 3, 3), np.nan)
-        point_covariance[self._points] = self._point_covariance(lines)
+        point_covariance[self._points] = self._point_covariance(fit)
         return Residuals(error, sigma, error_uv, points, point_covariance)
 
     def shared_errors(self, parameters: ArrayLike) -> Floats:
@@ -140,8 +151,8 @@ class SharedLikelihood(Likelihood):
         Reported minus true body pose, the posterior mean at the parameters (11,).
         """
         vector = self._vector(parameters)
-        result, _ = self._linearised(vector)
-        return -levels_at(vector).shared * np.einsum("nij,nj->ni", self._arrays.shared_root, result.errors)
+        errors = self._fit(vector).marginal.errors
+        return -levels_at(vector).shared * np.einsum("nij,nj->ni", self._arrays.shared_root, errors)
 
     def select(self, numbers: Sequence[int]) -> "SharedLikelihood":
         """The same model of these observations only."""
@@ -155,25 +166,33 @@ class SharedLikelihood(Likelihood):
             )
         return vector
 
-    def _linearised(self, vector: Floats) -> tuple[Marginal, Lines]:
+    def _weighted_marginal(self, vector: Floats) -> tuple[Marginal, Floats, Floats]:
+        """The marginal with the weights of views (N,) and lines (L,) that belong to it."""
+        weights = np.ones(self.survey.n_observations), np.ones(len(self._arrays.u_px))
         optics, levels = optics_at(vector, self._fixed), levels_at(vector)
-        result = marginal(self._arrays, optics, levels, len(self._points), *self._unit_weights)
+        return marginal(self._arrays, optics, levels, len(self._points), *weights), *weights
+
+    def _fit(self, vector: Floats) -> _Fit:
+        found, view_weight, line_weight = self._weighted_marginal(vector)
         lines = empty_lines(len(self._arrays.u_px))
-        if not np.isfinite(result.chi_squared) or not linearise(self._arrays, optics, levels, result.points_m, lines):
+        optics, levels = optics_at(vector, self._fixed), levels_at(vector)
+        if not np.isfinite(found.chi_squared) or not linearise(self._arrays, optics, levels, found.points_m, lines):
             raise EstimationError(
                 f"no residuals at the parameters {vector.tolist()}: a point has no position in front of the camera; "
                 "start from a pose nearer to the measured one"
             )
-        return result, lines
+        return _Fit(found, lines, view_weight, line_weight)
 
-    def _line_covariance(self, lines: Lines) -> Floats:
-        uu, uv, vv = lines.precision.T
+    def _line_covariance(self, fit: _Fit) -> Floats:
+        uu, uv, vv = fit.lines.precision.T
         own = np.linalg.inv(np.stack([np.stack([uu, uv], axis=-1), np.stack([uv, vv], axis=-1)], axis=-1))
-        return own + lines.by_shared @ np.swapaxes(lines.by_shared, 1, 2)
+        shared = fit.lines.by_shared @ np.swapaxes(fit.lines.by_shared, 1, 2)
+        view_weight = fit.view_weight[self._arrays.line_view]
+        return own / fit.line_weight[:, None, None] + shared / view_weight[:, None, None]
 
-    def _point_covariance(self, lines: Lines) -> Floats:
+    def _point_covariance(self, fit: _Fit) -> Floats:
         count = len(self._points)
-        system = normal_equations(self._arrays, lines, count, *self._unit_weights)
+        system = normal_equations(self._arrays, fit.lines, count, fit.view_weight, fit.line_weight)
         information = np.zeros((3 * count, 3 * count))
         for k in range(count):
             block = slice(3 * k, 3 * k + 3)

@@ -138,13 +138,19 @@ def intersect_rays(arrays: SharedArrays, optics: Optics, n_points: int) -> Float
 
 @njit(cache=True, error_model="numpy")
 def project_line(
-    arrays: SharedArrays, optics: Optics, line: int, point_m: Floats, residual_px: Floats, by_point: Floats
+    optics: Optics,
+    u_px: float,
+    position_m: Floats,
+    world_from_body: Floats,
+    point_m: Floats,
+    residual_px: Floats,
+    by_point: Floats,
 ) -> bool:
     """Fill the residual (2,) of a line, observed minus projected, and A (2, 3); whether the point (3,) is in front.
 
     With q the point in the camera's axes: `u = f x (1 + k1 x^2 + k2 x^4) + u0`, `x = q_x/q_z`, and `v = f q_y/q_z`.
     """
-    w_b, c_b, p = arrays.world_from_body[line], optics.camera_from_body, arrays.position_m[line]
+    w_b, c_b, p = world_from_body, optics.camera_from_body, position_m
     d0, d1, d2 = point_m[0] - p[0], point_m[1] - p[1], point_m[2] - p[2]
     b0 = w_b[0, 0] * d0 + w_b[1, 0] * d1 + w_b[2, 0] * d2 - optics.lever_arm_m[0]
     b1 = w_b[0, 1] * d0 + w_b[1, 1] * d1 + w_b[2, 1] * d2 - optics.lever_arm_m[1]
@@ -155,7 +161,7 @@ def project_line(
     x = (c_b[0, 0] * b0 + c_b[0, 1] * b1 + c_b[0, 2] * b2) / depth
     y = (c_b[1, 0] * b0 + c_b[1, 1] * b1 + c_b[1, 2] * b2) / depth
     x2, f = x * x, optics.focal_length_px
-    residual_px[0] = arrays.u_px[line] - optics.principal_point_px - f * x * (1.0 + x2 * (optics.k1 + x2 * optics.k2))
+    residual_px[0] = u_px - optics.principal_point_px - f * x * (1.0 + x2 * (optics.k1 + x2 * optics.k2))
     residual_px[1] = -f * y
     by_x = f * (1.0 + x2 * (3.0 * optics.k1 + x2 * 5.0 * optics.k2)) / depth
     by_y = f / depth
@@ -203,28 +209,30 @@ def linearise(arrays: SharedArrays, optics: Optics, levels: Levels, points_m: Fl
     `W = a J F` and `D = b^2 J Q J^T + g^2 diag(sigma_u^2, sigma_v^2)`, with a, b, g the levels.
     """
     by_body, offset = np.empty((2, 6)), np.empty(3)
+    by_u, by_v = by_body[0], by_body[1]
     white2, pixel2 = levels.white**2, levels.pixel**2
     for line in range(arrays.u_px.shape[0]):
-        point = points_m[arrays.line_point[line]]
-        if not project_line(arrays, optics, line, point, lines.residual_px[line], lines.by_point[line]):
+        point, position, by_point = points_m[arrays.line_point[line]], arrays.position_m[line], lines.by_point[line]
+        u_px, w_b = arrays.u_px[line], arrays.world_from_body[line]
+        if not project_line(optics, u_px, position, w_b, point, lines.residual_px[line], by_point):
             return False
         for i in range(3):
-            offset[i] = point[i] - arrays.position_m[line, i]
-        body_pose_jacobian(lines.by_point[line], offset, arrays.euler_axes[line], by_body)
-        root, reported = arrays.shared_root[arrays.line_view[line]], arrays.covariance[line]
+            offset[i] = point[i] - position[i]
+        body_pose_jacobian(by_point, offset, arrays.euler_axes[line], by_body)
         uu, uv, vv = 0.0, 0.0, 0.0
+        u0, u1, u2, u3, u4, u5 = by_u[0], by_u[1], by_u[2], by_u[3], by_u[4], by_u[5]
+        v0, v1, v2, v3, v4, v5 = by_v[0], by_v[1], by_v[2], by_v[3], by_v[4], by_v[5]
+        f, q, shared = arrays.shared_root[arrays.line_view[line]], arrays.covariance[line], lines.by_shared[line]
         for c in range(6):
-            shared_u, shared_v, white_u, white_v = 0.0, 0.0, 0.0, 0.0
-            for j in range(6):
-                shared_u += by_body[0, j] * root[j, c]
-                shared_v += by_body[1, j] * root[j, c]
-                white_u += by_body[0, j] * reported[j, c]
-                white_v += by_body[1, j] * reported[j, c]
-            lines.by_shared[line, 0, c] = levels.shared * shared_u
-            lines.by_shared[line, 1, c] = levels.shared * shared_v
-            uu += white_u * by_body[0, c]
-            uv += white_u * by_body[1, c]
-            vv += white_v * by_body[1, c]
+            along = u0 * f[0, c] + u1 * f[1, c] + u2 * f[2, c] + u3 * f[3, c] + u4 * f[4, c] + u5 * f[5, c]
+            across = v0 * f[0, c] + v1 * f[1, c] + v2 * f[2, c] + v3 * f[3, c] + v4 * f[4, c] + v5 * f[5, c]
+            shared[0, c], shared[1, c] = levels.shared * along, levels.shared * across
+        for c in range(6):
+            along = u0 * q[0, c] + u1 * q[1, c] + u2 * q[2, c] + u3 * q[3, c] + u4 * q[4, c] + u5 * q[5, c]
+            across = v0 * q[0, c] + v1 * q[1, c] + v2 * q[2, c] + v3 * q[3, c] + v4 * q[4, c] + v5 * q[5, c]
+            uu += along * by_u[c]
+            uv += along * by_v[c]
+            vv += across * by_v[c]
         uu = white2 * uu + pixel2 * optics.sigma_u_px**2
         vv = white2 * vv + pixel2 * optics.sigma_v_px**2
         uv *= white2

@@ -63,7 +63,8 @@ def triangulate(arrays: SharedArrays, optics: Optics, points_m: Floats) -> bool:
     weights = (optics.sigma_u_px**-2.0, optics.sigma_v_px**-2.0)
     for line in range(arrays.u_px.shape[0]):
         point = arrays.line_point[line]
-        if not project_line(arrays, optics, line, points_m[point], residual, by_point):
+        u_px, position, w_b = arrays.u_px[line], arrays.position_m[line], arrays.world_from_body[line]
+        if not project_line(optics, u_px, position, w_b, points_m[point], residual, by_point):
             return False
         for row in range(2):
             for i in range(3):
@@ -124,14 +125,15 @@ def solve_system(system: System) -> tuple[float, float]:
     """Solve the normal equations in place, the larger group eliminated; log-determinant and decrease of chi squared."""
     n_points, n_views = system.points.shape[0], system.views.shape[0]
     if 3 * n_points <= 6 * n_views:
-        kept = _block_diagonal(system.points)
+        kept = block_diagonal(system.points)
         return solve_blocks(system.views, system.cross, kept, system.view_vector, system.point_vector)
-    kept = _block_diagonal(system.views)
+    kept = block_diagonal(system.views)
     return solve_blocks(system.points, system.cross.T.copy(), kept, system.point_vector, system.view_vector)
 
 
 @njit(cache=True, error_model="numpy")
-def _block_diagonal(blocks: Floats) -> Floats:
+def block_diagonal(blocks: Floats) -> Floats:
+    """The matrix (B b, B b) with the blocks (B, b, b) on its diagonal, upper triangle only."""
     count, size = blocks.shape[0], blocks.shape[1]
     matrix = np.zeros((count * size, count * size))
     for block in range(count):
@@ -170,9 +172,17 @@ def marginal(
             return Marginal(np.inf, np.inf, points_m, errors)
         points_m += system.point_vector.reshape(n_points, 3)
         errors = system.view_vector.reshape(n_views, 6)
-        chi_squared = -decrease
-        for line in range(arrays.u_px.shape[0]):
-            r, p = lines.residual_px[line], lines.precision[line]
-            chi_squared += line_weight[line] * (p[0] * r[0] ** 2 + 2.0 * p[1] * r[0] * r[1] + p[2] * r[1] ** 2)
-            log_determinant += lines.log_determinant[line]
+        chi_squared = squared_residuals(lines, line_weight) - decrease
+        log_determinant += np.sum(lines.log_determinant)
     return Marginal(chi_squared, log_determinant, points_m, errors)
+
+
+@njit(cache=True, error_model="numpy")
+def squared_residuals(lines: Lines, line_weight: Floats) -> float:
+    """Sum over lines of their weight (L,) times `r^T D^-1 r`."""
+    total = 0.0
+    for line in range(line_weight.shape[0]):
+        u, v = lines.residual_px[line, 0], lines.residual_px[line, 1]
+        uu, uv, vv = lines.precision[line, 0], lines.precision[line, 1], lines.precision[line, 2]
+        total += line_weight[line] * (uu * u * u + 2.0 * uv * u * v + vv * v * v)
+    return total

@@ -8,12 +8,13 @@ from scipy.optimize import minimize
 from linepose.likelihood.shared import SharedLikelihood
 
 pytestmark = [pytest.mark.field, pytest.mark.skipif(not field_data.PRESENT, reason="no field data")]
+SCALE = [*[0.05] * 3, *[0.01] * 3, *[0.5] * 3, 0.6, 3e-5]
 HAND_MEASURED = [0.200, 0.000, -0.800, -0.762, 0.762, -1.433]
 
 
 def optimum(likelihood, pose):
     """Parameters (11,) at the optimum, and the covariance that the curvature there means."""
-    start, scale = likelihood.start(pose), likelihood.scatter(0.05, 0.01)
+    start, scale = likelihood.start(pose), np.array(SCALE)
 
     def negative(step):
         return -likelihood.log_likelihood(start + step * scale)
