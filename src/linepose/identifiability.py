@@ -1,7 +1,8 @@
 """What the data say of each parameter, and what they leave open: prior against posterior.
 
-Works on any noise model: parameters that have no prior of their own (the pose) are compared with the range in which
-they were known by hand. Give samples' covariance, or the inverse curvature at the optimum.
+Works on any noise model. Parameters that have no prior of their own (the pose) are compared with the sigmas with which
+they were known by hand; their shrinkage is negative where the data alone say less than the hand measurement. Give the
+covariance of samples, or the inverse curvature at the optimum.
 """
 
 from collections.abc import Sequence

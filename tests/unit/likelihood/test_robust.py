@@ -3,7 +3,7 @@ import field_data
 import numpy as np
 import pytest
 from scipy.optimize import minimize
-from scipy.special import gammaln, logsumexp
+from scipy.special import digamma, gammaln, logsumexp
 from small_survey import CAMERA, POSE, Truth, make_survey, without
 
 from linepose.errors import EstimationError, InputError
@@ -23,6 +23,19 @@ def parameters_of(likelihood, levels=LEVELS):
 def with_a_bad_view(survey, row):
     survey.position_m[row] += [0.12, -0.08, 0.05]
     return survey
+
+
+def weight_share(weights, size, freedom=4.0):
+    """Expected log-scale of the Gaussians less the divergence of the Gamma q(w) from its prior, 0 at weights of one."""
+
+    def share(weight):
+        shape, shape0, rate0 = (freedom + size) / 2, freedom / 2, freedom / 2
+        rate = shape / weight
+        divergence = (shape - shape0) * digamma(shape) - gammaln(shape) + gammaln(shape0)
+        divergence += shape0 * (np.log(rate) - np.log(rate0)) + shape * (rate0 - rate) / rate
+        return size / 2 * (digamma(shape) - np.log(rate)) - divergence
+
+    return np.sum(share(weights) - share(1.0))
 
 
 def test_without_tails_it_is_the_shared_error_model():
@@ -155,6 +168,12 @@ def test_the_larger_group_is_eliminated_without_changing_anything():
             pair = slice(2 * row, 2 * row + 2)
             square = np.trace(np.linalg.solve(own[pair, pair], own_second[pair, pair]))
             assert weights.point[i, used[k]] == pytest.approx((4 + 2) / (4 + square), rel=0.01)
+        value = -0.5 * (left @ weighted @ left + np.sum(np.repeat(weights.view, 6) * mean[tail] ** 2))
+        value -= 0.5 * (np.linalg.slogdet(information)[1] + np.linalg.slogdet(own)[1])
+        value += weight_share(weights.view, 6) + weight_share(weights.point.ravel(), 2)
+        value += dense_shared.log_prior(CAMERA, vector)
+        # to second order in the tolerances of the weights (3e-3, some 36 of them) and of the linearisation
+        assert likelihood.log_likelihood(vector) == pytest.approx(value, abs=0.01)
 
 
 def test_undefined_parameters_have_no_probability():
