@@ -32,7 +32,7 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
-PLATFORMS = STUDY.platforms
+PLATFORMS = list(PROJECT.platforms)
 
 
 wildcard_constraints:
@@ -57,30 +57,6 @@ def experiment(key):
 def platform_file(wildcards):
     """The platform's file, for messages."""
     return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
-
-
-def others(wildcards):
-    """Platforms that the sensitivity experiment compares with."""
-    return PROJECT.platforms[wildcards.platform].experiments.sensitivity.platforms
-
-
-def asked_for(platform):
-    """The experiments' results that a platform's file asks for."""
-    experiments = PROJECT.platforms[platform].experiments
-    repeatability = experiments.repeatability
-    asked = {
-        "uncertainty": True,
-        "subsets": experiments.subsets,
-        "repeatability": repeatability and repeatability.first,
-        "splits": repeatability and repeatability.n_splits,
-        "leave_one_out": repeatability,
-        "basin_summary": experiments.basin,
-        "mapping_summary": experiments.mapping,
-        "sensitivity": experiments.sensitivity,
-    }
-    return [
-        f"results/{platform}/{key}.parquet" for key, value in asked.items() if value
-    ]
 
 
 def section(key):

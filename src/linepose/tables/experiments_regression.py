@@ -1,6 +1,6 @@
 """The published numbers of the experiments beside the obtained ones: Tables 4 and 5, and section 4.7."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 import pandas as pd
@@ -9,6 +9,7 @@ from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.tables.published import LOW_DIVERSITY_NOTE
 from linepose.tables.regression import POSE_ABSOLUTE, ROUNDING, likelihood_row
 from linepose.tables.row import row
+from linepose.tables.simulated import SIMULATED, SIMULATED_RELATIVE
 
 SIGMA_RELATIVE: Final = 0.15  # the chains are short and the subsets small
 INSIDE_AT_LEAST: Final = 0.95
@@ -56,6 +57,22 @@ def basin_rows(name: str, published: Mapping[str, Any], summary: pd.DataFrame) -
     )
     outside["passed"] = bool(low <= outer["success_rate"] <= high)
     return [inside, outside]
+
+
+def simulated_basin_rows(name: str, published: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, Any]]:
+    """Section 4.7 of a simulated platform, to 40 %."""
+    rate = summary[summary["optimiser"] == _SWEEP].set_index("region")["success_rate"]
+    beyond = published["section4"]["basin"]["beyond_success_rate"]
+    return [
+        row(f"{name}, section 4.7, success {region}", claimed, rate[region], SIMULATED_RELATIVE * claimed, SIMULATED)
+        for region, claimed in (("inside", 1.0), ("outside", beyond))
+    ]
+
+
+BASIN_ROWS_OF: Final[dict[str, Callable[[str, Mapping[str, Any], pd.DataFrame], list[dict[str, Any]]]]] = {
+    "ladybird": basin_rows,
+    "shrimp_simulated": simulated_basin_rows,
+}
 
 
 def table_rows(
