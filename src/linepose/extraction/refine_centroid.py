@@ -35,6 +35,12 @@ class Spot:
     left: int
     mask: NDArray[np.bool_]
 
+    def holds(self, u: int, v: int) -> bool:
+        """Whether a pixel of a line is part of the region."""
+        row, column = v - self.top, u - self.left
+        height, width = self.mask.shape
+        return 0 <= row < height and 0 <= column < width and bool(self.mask[row, column])
+
 
 def centroid(intensity: Intensity, u_px: float, line: float) -> tuple[float, float] | None:
     """Intensity-weighted centre of the dot nearest a rough position, the background subtracted.
@@ -58,17 +64,23 @@ def centroid(intensity: Intensity, u_px: float, line: float) -> tuple[float, flo
 
 
 def _spot(intensity: Intensity, u_px: float, line: float) -> Spot | None:
-    """The solid bright spot nearest a position; a ring, whatever its brightness, is hollow and passed over."""
+    """The brightest solid spot near a position; a ring, whatever its brightness, is hollow and passed over."""
     n_lines, n_pixels = intensity.shape
     u0, v0 = int(np.clip(round(u_px), 0, n_pixels - 1)), int(np.clip(round(line), 0, n_lines - 1))
     top, left = max(v0 - _REACH_PX, 0), max(u0 - _REACH_PX, 0)
     near = intensity[top : v0 + _REACH_PX + 1, left : u0 + _REACH_PX + 1]
     v, u = np.nonzero(near == ndimage.maximum_filter(near, size=3))
     v, u = v + top, u + left
-    for one in np.argsort((u - u_px) ** 2 + (v - line) ** 2, kind="stable"):
-        spot = _region_around(intensity, int(u[one]), int(v[one]))
-        if spot is not None and _is_solid(spot.mask):
-            return spot
+    hollow: list[Spot] = []
+    for one in np.argsort(-intensity[v, u], kind="stable"):
+        if any(region.holds(int(u[one]), int(v[one])) for region in hollow):
+            continue
+        region = _region_around(intensity, int(u[one]), int(v[one]))
+        if region is None:
+            return None
+        if _is_solid(region.mask):
+            return region
+        hollow.append(region)
     return None
 
 
