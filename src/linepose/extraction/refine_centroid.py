@@ -19,7 +19,7 @@ _LARGEST_WINDOW: Final = 1000
 _DARK_PERCENT: Final = 20  # the darkest fifth is the print around the dot, even where rings share the window
 _LOWEST_PEAK: Final = 0.1  # of the brightest thing around
 _LEVEL: Final = 0.35  # of the peak's height above the dark: where a spot ends
-_FILLS_ELLIPSE: Final = 0.6  # a ring fills 0.44
+_FILLS_ELLIPSE: Final = 0.6  # an arc of a ring fills less
 _MARGIN: Final = 0.75  # of the dot's extent, added on each side of it: stays within the ring
 _TURNS: Final = 30
 _CONVERGED_PX: Final = 1e-4
@@ -109,7 +109,9 @@ def _region_around(intensity: Intensity, u: int, v: int) -> Spot | None:
 
 
 def _is_solid(mask: NDArray[np.bool_]) -> bool:
-    """Whether a region fills the ellipse of its own moments."""
+    """Whether a region is without a hole and fills the ellipse of its own moments."""
+    if ndimage.binary_fill_holes(mask).sum() > mask.sum():
+        return False
     determinant = float(np.linalg.det(_scatter(mask)))
     return mask.sum() >= _FILLS_ELLIPSE * 4 * np.pi * np.sqrt(determinant)
 
