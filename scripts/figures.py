@@ -16,6 +16,7 @@ with stage(snakemake) as log:
         platform=Platform.model_validate(snakemake.params.platform),
         folder=Path(snakemake.input.pose).parent,
         threshold_px=snakemake.params.outliers["threshold_px"],
+        data_folder=Path(snakemake.params.folder),
     )
     folder = Path(snakemake.output[0])
     index = render_figures(results, folder)

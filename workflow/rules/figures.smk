@@ -9,6 +9,7 @@ rule figures:
         residuals="results/{platform}/residuals.parquet",
         points="results/{platform}/estimated_points.parquet",
         experiments=drawn_from,
+        record=lambda wildcards: PROJECT.record(wildcards.platform),
     output:
         report(
             directory("results/{platform}/figures"),
@@ -27,6 +28,7 @@ rule figures:
             mode="json"
         ),
         outliers=section("outliers"),
+        folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
         code=source_digest("linepose.figures.render"),
     script:
         "../../scripts/figures.py"

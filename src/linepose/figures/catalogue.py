@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 
 from linepose import experiment_schemas, result_schemas
 from linepose.config.platform import Platform
-from linepose.errors import InputError
 from linepose.figures import (
     basin,
     corner_plot,
@@ -23,7 +22,8 @@ from linepose.figures import (
     trace,
     uncertainty,
 )
-from linepose.figures.results import PlatformResults, ScanExample
+from linepose.figures.results import PlatformResults
+from linepose.figures.scan_example import scan_example
 
 
 @dataclass(frozen=True)
@@ -94,10 +94,24 @@ def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
     return lambda r: residuals.residuals_caption(r.table("residuals", result_schemas.RESIDUALS), by)
 
 
-def _scan(r: PlatformResults) -> ScanExample:
-    if r.scan is None:
-        raise InputError(r.name, "no scans", "scan images", "give source.scans in the platform's file")
-    return r.scan()
+def _stacked_scan(r: PlatformResults) -> Figure:
+    example = scan_example(r)
+    return scan.stacked_scan(example.intensity, example.points)
+
+
+def _stacked_scan_caption(r: PlatformResults) -> str:
+    example = scan_example(r)
+    return scan.stacked_scan_caption(example.intensity, example.observation)
+
+
+def _labelled_points(r: PlatformResults) -> Figure:
+    example = scan_example(r)
+    return scan.labelled_points(example.intensity, example.points)
+
+
+def _labelled_points_caption(r: PlatformResults) -> str:
+    example = scan_example(r)
+    return scan.labelled_points_caption(example.points, example.observation)
 
 
 def _without(key: str) -> Callable[[Platform], str]:
@@ -137,8 +151,8 @@ FIGURES: Final = (
         "Stacked scan",
         "Figure 6",
         "grey image of one observation's scan lines with the pattern framed",
-        lambda r: scan.stacked_scan(_scan(r).intensity, _scan(r).points),
-        lambda r: scan.stacked_scan_caption(_scan(r).intensity, _scan(r).observation),
+        _stacked_scan,
+        _stacked_scan_caption,
         _without_scans,
     ),
     CatalogueEntry(
@@ -146,8 +160,8 @@ FIGURES: Final = (
         "Points found in the scan",
         "Figure 7",
         "close-up of the pattern in a scan, each point crossed and numbered",
-        lambda r: scan.labelled_points(_scan(r).intensity, _scan(r).points),
-        lambda r: scan.labelled_points_caption(_scan(r).points, _scan(r).observation),
+        _labelled_points,
+        _labelled_points_caption,
         _without_scans,
     ),
     CatalogueEntry(

@@ -5,9 +5,12 @@ import pandas as pd
 from matplotlib.figure import Figure
 from scipy.stats import chi
 
+from linepose.errors import InputError
+from linepose.experiments.split_summary import known_distances, sigma_factor
 from linepose.figures.checks import usable_rows
 from linepose.figures.style import BLACK, BLUE, GREY, HALF_PAGE_IN, RED, blank_figure, styled
 from linepose.pose import N_PARAMETERS
+from linepose.rotations import Floats
 
 
 @styled
@@ -43,11 +46,6 @@ def repeatability(splits: pd.DataFrame, pair: pd.DataFrame | None = None) -> Fig
     return figure
 
 
-def sigma_factor(splits: pd.DataFrame) -> float:
-    """By how much the sigmas would have to grow for the splits' median distance to be what right sigmas give."""
-    return float(np.median(_distances(splits)) / chi.median(N_PARAMETERS))
-
-
 def repeatability_caption(splits: pd.DataFrame) -> str:
     """The median distance, and what it says of the sigmas."""
     distance, factor = _distances(splits), sigma_factor(splits)
@@ -61,7 +59,8 @@ def repeatability_caption(splits: pd.DataFrame) -> str:
     )
 
 
-def _distances(splits: pd.DataFrame) -> pd.Series:
+def _distances(splits: pd.DataFrame) -> Floats:
     usable_rows(splits, ["split"], "splits.parquet")
-    known = splits.dropna(subset=["mahalanobis"]) if "mahalanobis" in splits else splits
-    return usable_rows(known, ["mahalanobis"], "splits.parquet, where both poses are determined")["mahalanobis"]
+    if "mahalanobis" not in splits:
+        raise InputError("splits.parquet", "no column mahalanobis", "the distance of each split", "run its stage again")
+    return known_distances(splits)

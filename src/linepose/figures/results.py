@@ -1,6 +1,6 @@
 """The results of one platform as figures ask for them: read once, checked against their schema."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,7 +10,6 @@ import pyarrow as pa
 
 from linepose.config.platform import Platform
 from linepose.figures.checks import stage_row
-from linepose.figures.scan import Intensity
 from linepose.observations import Survey, survey_from_table
 from linepose.outliers import stage_observations
 from linepose.pose import POSE_COLUMNS
@@ -20,25 +19,21 @@ from linepose.storage import read_table
 
 
 @dataclass(frozen=True)
-class ScanExample:
-    """One observation's scan lines (L, P) and the points found in it: point, u_px, line."""
-
-    observation: int
-    intensity: Intensity
-    points: pd.DataFrame
-
-
-@dataclass(frozen=True)
 class PlatformResults:
-    """What figures know of a platform: its file, the folder of its results, truth and scan where there are any."""
+    """What figures know of a platform: its file, the folder of its results, and the folder of its data."""
 
     name: str
     platform: Platform
     folder: Path
     threshold_px: float
-    true_pose: Floats | None = None
-    scan: Callable[[], ScanExample] | None = None
+    data_folder: Path | None = None
     _read: dict[str, pd.DataFrame] = field(default_factory=dict)
+
+    @property
+    def true_pose(self) -> Floats | None:
+        """The true pose (6,) of a simulated platform."""
+        simulation = self.platform.simulation
+        return None if simulation is None else np.array(simulation.true_pose)
 
     def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
         """A result by its name below the folder; raises InputError where it is missing or lacks columns."""
@@ -70,4 +65,5 @@ class PlatformResults:
     def marked_poses(self) -> Mapping[str, Floats]:
         """The poses (6,) that figures mark, by the name in the legend."""
         marked = {"optimum": self.pose("inliers"), "hand measured": self.pose("hand_measured")}
-        return marked if self.true_pose is None else {**marked, "truth": self.true_pose}
+        truth = self.true_pose
+        return marked if truth is None else {**marked, "truth": truth}

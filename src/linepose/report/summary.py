@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from linepose import experiment_schemas, result_schemas
+from linepose.experiments.split_summary import sigma_factor
 from linepose.experiments.subsets import body_angles_rad
-from linepose.figures.repeatability import sigma_factor
 from linepose.figures.results import PlatformResults
 from linepose.observations import Survey
 from linepose.pose import POSE_COLUMNS

@@ -15,7 +15,7 @@ _STAGES: Final = {"all_25": "all", "inliers_16": "inliers", "hand_measured": "ha
 
 def navigation_table(platform: str, published: Sequence[float], obtained: pd.DataFrame) -> pd.DataFrame:
     """Table 2: median navigation sigmas, one row a quantity, m and deg; `obtained` as in `NAVIGATION_SIGMA`."""
-    sigma = obtained.iloc[0][list(NAVIGATION_SIGMA_COLUMNS)].to_numpy(dtype=float)
+    sigma = obtained.iloc[0][list(NAVIGATION_SIGMA_COLUMNS)].to_numpy(dtype=float, copy=True)
     sigma[3:] = np.rad2deg(sigma[3:])
     return pd.DataFrame(
         {
