@@ -27,6 +27,11 @@ PASSES = [
 TINY = {
     "like": "ladybird-sim",
     "published": None,
+    "experiments": {
+        "basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]},
+        "repeatability": None,
+        "sensitivity": None,
+    },
     "simulation": {
         "passes": PASSES,
         "faults": [],

@@ -19,7 +19,7 @@ _LARGEST_WINDOW: Final = 1000
 _DARK_PERCENT: Final = 20  # the darkest fifth is the print around the dot, even where rings share the window
 _LOWEST_PEAK: Final = 0.1  # of the brightest thing around
 _LEVEL: Final = 0.35  # of the peak's height above the dark: where a spot ends
-_FILLS_ELLIPSE: Final = 0.6  # a ring fills 0.44
+_FILLS_ELLIPSE: Final = 0.6  # an arc of a ring fills less
 _MARGIN: Final = 0.75  # of the dot's extent, added on each side of it: stays within the ring
 _TURNS: Final = 30
 _CONVERGED_PX: Final = 1e-4
@@ -34,6 +34,12 @@ class Spot:
     top: int
     left: int
     mask: NDArray[np.bool_]
+
+    def holds(self, u: int, v: int) -> bool:
+        """Whether a pixel of a line is part of the region."""
+        row, column = v - self.top, u - self.left
+        height, width = self.mask.shape
+        return 0 <= row < height and 0 <= column < width and bool(self.mask[row, column])
 
 
 def centroid(intensity: Intensity, u_px: float, line: float) -> tuple[float, float] | None:
@@ -58,17 +64,23 @@ def centroid(intensity: Intensity, u_px: float, line: float) -> tuple[float, flo
 
 
 def _spot(intensity: Intensity, u_px: float, line: float) -> Spot | None:
-    """The solid bright spot nearest a position; a ring, whatever its brightness, is hollow and passed over."""
+    """The brightest solid spot near a position; a ring, whatever its brightness, is hollow and passed over."""
     n_lines, n_pixels = intensity.shape
     u0, v0 = int(np.clip(round(u_px), 0, n_pixels - 1)), int(np.clip(round(line), 0, n_lines - 1))
     top, left = max(v0 - _REACH_PX, 0), max(u0 - _REACH_PX, 0)
     near = intensity[top : v0 + _REACH_PX + 1, left : u0 + _REACH_PX + 1]
     v, u = np.nonzero(near == ndimage.maximum_filter(near, size=3))
     v, u = v + top, u + left
-    for one in np.argsort((u - u_px) ** 2 + (v - line) ** 2, kind="stable"):
-        spot = _region_around(intensity, int(u[one]), int(v[one]))
-        if spot is not None and _is_solid(spot.mask):
-            return spot
+    hollow: list[Spot] = []
+    for one in np.argsort(-intensity[v, u], kind="stable"):
+        if any(region.holds(int(u[one]), int(v[one])) for region in hollow):
+            continue
+        region = _region_around(intensity, int(u[one]), int(v[one]))
+        if region is None:
+            return None
+        if _is_solid(region.mask):
+            return region
+        hollow.append(region)
     return None
 
 
@@ -97,7 +109,9 @@ def _region_around(intensity: Intensity, u: int, v: int) -> Spot | None:
 
 
 def _is_solid(mask: NDArray[np.bool_]) -> bool:
-    """Whether a region fills the ellipse of its own moments."""
+    """Whether a region is without a hole and fills the ellipse of its own moments."""
+    if ndimage.binary_fill_holes(mask).sum() > mask.sum():
+        return False
     determinant = float(np.linalg.det(_scatter(mask)))
     return mask.sum() >= _FILLS_ELLIPSE * 4 * np.pi * np.sqrt(determinant)
 

@@ -60,12 +60,15 @@ def basin_rows(name: str, published: Mapping[str, Any], summary: pd.DataFrame) -
 
 
 def simulated_basin_rows(name: str, published: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, Any]]:
-    """Section 4.7 of a simulated platform, to 40 %."""
+    """Section 4.7 of a simulated platform, to 40 %; more successes outside than claimed are a known deviation."""
     rate = summary[summary["optimiser"] == _SWEEP].set_index("region")["success_rate"]
     beyond = published["section4"]["basin"]["beyond_success_rate"]
+    tolerance = SIMULATED_RELATIVE * beyond
+    more = bool(rate["outside"] > beyond + tolerance)
+    note = f"{SIMULATED}; its basin reaches farther than the paper claims" if more else SIMULATED
     return [
-        row(f"{name}, section 4.7, success {region}", claimed, rate[region], SIMULATED_RELATIVE * claimed, SIMULATED)
-        for region, claimed in (("inside", 1.0), ("outside", beyond))
+        row(f"{name}, section 4.7, success inside", 1.0, rate["inside"], SIMULATED_RELATIVE, SIMULATED),
+        row(f"{name}, section 4.7, success outside", beyond, rate["outside"], tolerance, note, more),
     ]
 
 

@@ -43,6 +43,11 @@ def test_brighter_ring_within_reach_is_passed_over(method):
     np.testing.assert_allclose(METHODS[method](image, 41.5, 89.5), (40.2, 90.1), atol=0.11)
 
 
+def test_thick_ring_that_fills_most_of_its_ellipse_is_passed_over():
+    image = with_ring(spot(40.2, 90.1, sigma_u=0.9, sigma_line=0.9), 40.2, 90.1, inner=4.0, outer=11.0)
+    np.testing.assert_allclose(METHODS["centroid"](image, 42.2, 92.0), (40.2, 90.1), atol=0.11)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_flat_print_has_no_dot(method):
     assert METHODS[method](np.full(SHAPE, 100, dtype=np.float32), 40.0, 90.0) is None

@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.result_schemas import TRUTH_ERROR
+from linepose.tables.experiments_regression import BASIN_ROWS_OF
 from linepose.tables.simulated import fault_rows, sigma_rows, truth_rows
 from linepose.tables.truth_error import true_pose, truth_error_table
 
@@ -122,3 +123,22 @@ def test_error_beyond_the_published_sigmas_fails(errors):
     rows = {row["quantity"]: row for row in truth_rows("robot", PUBLISHED, table)}
     beyond = rows["robot, error against truth, theta_y_rad"]
     assert (beyond["passed"], beyond["known_deviation"]) == (False, False)
+
+
+@pytest.mark.parametrize(
+    ("inside", "outside", "passed", "known"),
+    [
+        (1.0, 0.6, [True, True], False),
+        (0.61, 0.83, [True, True], False),
+        (0.59, 0.35, [False, False], False),
+        (1.0, 0.95, [True, False], True),
+    ],
+)
+def test_basin_claims_hold_to_forty_per_cent(inside, outside, passed, known):
+    summary = pd.DataFrame(
+        {"optimiser": ["powell"] * 2, "region": ["inside", "outside"], "success_rate": [inside, outside]}
+    )
+    rows = BASIN_ROWS_OF["shrimp_simulated"]("robot", {"section4": {"basin": {"beyond_success_rate": 0.6}}}, summary)
+    assert [row["passed"] for row in rows] == passed
+    assert [row["known_deviation"] for row in rows] == [False, known]
+    assert all("simulated" in row["note"] for row in rows)
