@@ -53,7 +53,7 @@ def observations() -> pd.DataFrame:
     rows = []
     for number in range(1, N_OBSERVATIONS + 1):
         bearing = 2 * np.pi * number / N_OBSERVATIONS
-        position = [*ORIGIN, 3 * np.cos(bearing), 3 * np.sin(bearing), -1.0]
+        position = ORIGIN + np.array([3 * np.cos(bearing), 3 * np.sin(bearing), -1.0])
         euler = [np.radians(5.0) * (number % 2), 0.01, bearing]
         for point in range(len(POINTS)):
             rows.append(
@@ -175,7 +175,7 @@ def mapping() -> pd.DataFrame:
     for name, error in (("hand_measured", 0.1), ("calibrated", 0.01), ("perturbed", 0.05)):
         for number in range(1, N_OBSERVATIONS + 1):
             for point, place in enumerate(ORIGIN + POINTS):
-                shifted = [*place, error * np.cos(number), error * np.sin(number), 0.0]
+                shifted = place + np.array([error * np.cos(number), error * np.sin(number), 0.0])
                 row = {"pose": name, "observation": number, "point": point}
                 row |= dict(zip(PROJECTED_COLUMNS, shifted, strict=True))
                 diagonal = {PROJECTED_COVARIANCE_COLUMNS[k]: 4e-4 for k in (0, 3)}
