@@ -15,6 +15,7 @@ report: "workflow/report/workflow.rst"
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/wanted.smk"
 include: "workflow/rules/fetch.smk"
 include: "workflow/rules/compile.smk"
 include: "workflow/rules/check_data.smk"

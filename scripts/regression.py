@@ -11,7 +11,7 @@ with stage(snakemake) as log:
     from linepose.experiment_schemas import BASIN_SUMMARY, REPEATABILITY, SUBSETS
     from linepose.result_schemas import NAVIGATION_SIGMA, OUTLIERS, POSE, REGRESSION, TRUTH_ERROR
     from linepose.storage import read_table, write_csv, write_table
-    from linepose.tables.experiments_regression import basin_rows, table_rows
+    from linepose.tables.experiments_regression import BASIN_ROWS_OF, table_rows
     from linepose.tables.regression import PlatformResults, regression_table
 
     published_as = snakemake.params.published_as
@@ -32,7 +32,7 @@ with stage(snakemake) as log:
     ):
         rows += table_rows(name, published, read_table(subsets, SUBSETS), read_table(pairs, REPEATABILITY))
     for name, summary in zip(snakemake.params.swept, snakemake.input.basin, strict=True):
-        rows += basin_rows(name, published, read_table(summary, BASIN_SUMMARY))
+        rows += BASIN_ROWS_OF[published_as[name]](name, published, read_table(summary, BASIN_SUMMARY))
     stages = regression_table(published, results, published_as)
     table = pd.concat([stages, pd.DataFrame(rows, columns=stages.columns)], ignore_index=True)
     write_table(table, snakemake.output.parquet, REGRESSION)

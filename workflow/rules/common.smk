@@ -32,7 +32,7 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
-PLATFORMS = STUDY.platforms
+PLATFORMS = list(PROJECT.platforms)
 
 
 wildcard_constraints:

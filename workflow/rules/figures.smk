@@ -1,22 +1,3 @@
-def drawn_from(wildcards):
-    """The results that a platform's figures are drawn from, beside those that every platform has."""
-    experiments = PROJECT.platforms[wildcards.platform].experiments
-    repeatability = experiments.repeatability
-    asked = {
-        "repeatability": repeatability and repeatability.first,
-        "splits": repeatability and repeatability.n_splits,
-        "basin": experiments.basin,
-        "basin_summary": experiments.basin,
-        "mapping": experiments.mapping,
-        "mapping_summary": experiments.mapping,
-    }
-    return [
-        f"results/{wildcards.platform}/{key}.parquet"
-        for key, value in asked.items()
-        if value
-    ]
-
-
 rule figures:
     input:
         observations="results/{platform}/observations.parquet",

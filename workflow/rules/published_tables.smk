@@ -17,7 +17,7 @@ rule published_tables:
         "../../environment.yml"
     params:
         platform=COMPARED[0] if COMPARED else "",
-        folder="results/tables",
+        folder=lambda wildcards, output: str(Path(output[0]).parent),
         code=source_digest("linepose.tables.published"),
     script:
         "../../scripts/published_tables.py"

@@ -1,3 +1,5 @@
+from linepose.tables.experiments_regression import BASIN_ROWS_OF
+
 REGRESSED = {
     key: PROJECT.platforms[key].published
     for key in PLATFORMS
@@ -16,8 +18,9 @@ COMPARED = [
 ]
 SWEPT = [
     key
-    for key in COMPARED
-    if PROJECT.platforms[key].experiments.basin
+    for key, published in REGRESSED.items()
+    if published in BASIN_ROWS_OF
+    and PROJECT.platforms[key].experiments.basin
     and "powell" in PROJECT.platforms[key].experiments.basin.optimisers
 ]
 

@@ -1,28 +1,14 @@
-def reported(wildcards):
-    """Every result that the report's summaries rest on."""
-    always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
-    known = [
-        file
-        for platform in PLATFORMS
-        for file in asked_for(platform)
-        if Path(file).stem in ("splits", "leave_one_out")
-    ]
-    return known + expand(
-        "results/{platform}/{name}.parquet", platform=PLATFORMS, name=always
-    )
-
-
 rule report:
     input:
         results=reported,
         samples=expand("results/{platform}/mcmc", platform=PLATFORMS),
         figures=expand("results/{platform}/figures", platform=PLATFORMS),
         regression="results/regression.parquet",
-        tables=[
-            file
-            for file in (rules.published_tables.output if COMPARED else [])
-            if file.endswith(".parquet")
-        ],
+        tables=(
+            expand("results/tables/table{number}.parquet", number=[2, 3, 4, 5])
+            if COMPARED
+            else []
+        ),
     output:
         report(
             "results/report.html",

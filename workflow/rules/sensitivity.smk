@@ -1,8 +1,3 @@
-def others(wildcards):
-    """Platforms that the sensitivity experiment compares with."""
-    return PROJECT.platforms[wildcards.platform].experiments.sensitivity.platforms
-
-
 rule sensitivity:
     input:
         observations="results/{platform}/observations.parquet",

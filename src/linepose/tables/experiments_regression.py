@@ -1,13 +1,15 @@
 """The published numbers of the experiments beside the obtained ones: Tables 4 and 5, and section 4.7."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 import pandas as pd
 
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.tables.published import LOW_DIVERSITY_NOTE
-from linepose.tables.regression import POSE_ABSOLUTE, ROUNDING, likelihood_row, row
+from linepose.tables.regression import POSE_ABSOLUTE, ROUNDING, likelihood_row
+from linepose.tables.row import row
+from linepose.tables.simulated import SIMULATED, SIMULATED_RELATIVE
 
 SIGMA_RELATIVE: Final = 0.15  # the chains are short and the subsets small
 INSIDE_AT_LEAST: Final = 0.95
@@ -25,11 +27,8 @@ def subset_rows(
     poses = []
     for column, printed in zip(POSE_COLUMNS, published["pose"], strict=True):
         differs = bool(deviation) and abs(obtained[column] - printed) > POSE_ABSOLUTE
-        poses.append(
-            row(
-                f"{quantity}, {column}", printed, obtained[column], POSE_ABSOLUTE, deviation if differs else "", differs
-            )
-        )
+        note = deviation if differs else ""
+        poses.append(row(f"{quantity}, {column}", printed, obtained[column], POSE_ABSOLUTE, note, differs))
     sigmas = [
         row(f"{quantity}, {column}", printed, obtained[column], SIGMA_RELATIVE * printed + ROUNDING)
         for column, printed in zip(SIGMA_COLUMNS, published.get("sigma", ()), strict=False)
@@ -38,18 +37,42 @@ def subset_rows(
 
 
 def basin_rows(name: str, published: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, Any]]:
-    """Section 4.7: nearly all starts inside the triangle find the optimum, and about 60 % of those outside."""
-    rate = summary[summary["optimiser"] == _SWEEP].set_index("region")["success_rate"]
-    inside = row(f"{name}, section 4.7, success inside", 1.0, rate["inside"], 1 - INSIDE_AT_LEAST, "at least 95 %")
+    """Section 4.7: nearly all starts inside the triangle find the optimum, and about 60 % of those outside.
+
+    Few starts of the grid lie inside: there the claim holds as long as the rate's 95 % interval reaches it.
+    """
+    rates = summary[summary["optimiser"] == _SWEEP].set_index("region")
+    inner, outer = rates.loc["inside"], rates.loc["outside"]
+    beyond = published["section4"]["basin"]["beyond_success_rate"]
     low, high = OUTSIDE_FROM_TO
-    outside = row(
-        f"{name}, section 4.7, success outside",
-        published["section4"]["basin"]["beyond_success_rate"],
-        rate["outside"],
-        (high - low) / 2,
-        "approx. 60 %: passes from 50 to 75 %",
+    interval = f"{100 * inner['success_rate_low']:.1f} to {100 * inner['success_rate_high']:.1f} %"
+    inside_note = (
+        f"at least 95 %: passes where the 95 % interval, here {interval} of {inner['n_starts']} starts, reaches it"
     )
-    return [inside, outside | {"passed": bool(low <= rate["outside"] <= high)}]
+    inside = row(f"{name}, section 4.7, success inside", 1.0, inner["success_rate"], 1 - INSIDE_AT_LEAST, inside_note)
+    inside["passed"] = bool(inner["success_rate_high"] >= INSIDE_AT_LEAST)
+    outside_note = "approx. 60 %: passes from 50 to 75 %"
+    outside = row(
+        f"{name}, section 4.7, success outside", beyond, outer["success_rate"], (high - low) / 2, outside_note
+    )
+    outside["passed"] = bool(low <= outer["success_rate"] <= high)
+    return [inside, outside]
+
+
+def simulated_basin_rows(name: str, published: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, Any]]:
+    """Section 4.7 of a simulated platform, to 40 %."""
+    rate = summary[summary["optimiser"] == _SWEEP].set_index("region")["success_rate"]
+    beyond = published["section4"]["basin"]["beyond_success_rate"]
+    return [
+        row(f"{name}, section 4.7, success {region}", claimed, rate[region], SIMULATED_RELATIVE * claimed, SIMULATED)
+        for region, claimed in (("inside", 1.0), ("outside", beyond))
+    ]
+
+
+BASIN_ROWS_OF: Final[dict[str, Callable[[str, Mapping[str, Any], pd.DataFrame], list[dict[str, Any]]]]] = {
+    "ladybird": basin_rows,
+    "shrimp_simulated": simulated_basin_rows,
+}
 
 
 def table_rows(
@@ -62,10 +85,8 @@ def table_rows(
     rows = subset_rows(f"{name}, Table 4, high", table4["high"], diversity.loc["high"])
     rows += subset_rows(f"{name}, Table 4, low", table4["low"], low, LOW_DIVERSITY_NOTE)
     rows += subset_rows(f"{name}, verified, low", verified, low)
-    minimum = verified["neg_log_likelihood"]
-    rows.append(
-        likelihood_row(f"{name}, verified, low, neg_log_likelihood", minimum, low["neg_log_likelihood"], ROUNDING)
-    )
+    quantity, minimum = f"{name}, verified, low, neg_log_likelihood", verified["neg_log_likelihood"]
+    rows.append(likelihood_row(quantity, minimum, low["neg_log_likelihood"], ROUNDING))
     for subset in ("subset_1", "subset_2"):
         rows += subset_rows(f"{name}, Table 5, {subset}", table5[subset], pairs.loc[subset])
     return rows

@@ -9,13 +9,13 @@ import pandas as pd
 from linepose.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 
-LOW_DIVERSITY_NOTE: Final = "the published pose has -log L 21.606; the minimum, which is obtained, has 21.163: the published search stopped early"
+LOW_DIVERSITY_NOTE: Final = "the published pose has -log L 21.606, above the minimum obtained here, 21.163"
 _STAGES: Final = {"all_25": "all", "inliers_16": "inliers", "hand_measured": "hand_measured"}
 
 
 def navigation_table(platform: str, published: Sequence[float], obtained: pd.DataFrame) -> pd.DataFrame:
     """Table 2: median navigation sigmas, one row a quantity, m and deg; `obtained` as in `NAVIGATION_SIGMA`."""
-    sigma = obtained.iloc[0][list(NAVIGATION_SIGMA_COLUMNS)].to_numpy(dtype=float)
+    sigma = obtained.iloc[0][list(NAVIGATION_SIGMA_COLUMNS)].to_numpy(dtype=float, copy=True)
     sigma[3:] = np.rad2deg(sigma[3:])
     return pd.DataFrame(
         {

@@ -23,7 +23,7 @@ def truth_error_table(optima: pd.DataFrame, samples: Mapping[str, Floats], true_
     distance, which for the whole pose, that has no unit, is the error itself. Columns as in
     `result_schemas.TRUTH_ERROR`.
     """
-    truth = np.asarray(true_pose, dtype=float)
+    truth = np.array(true_pose, dtype=float)  # a copy: tables give arrays that may not be written to
     rows = []
     for _, optimum in optima.iterrows():
         stage = {"stage": optimum["stage"], "n_observations": optimum["n_observations"]}

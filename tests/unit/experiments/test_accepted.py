@@ -1,0 +1,58 @@
+"""Configured subsets of the accepted observations, and where the experiments' inputs come from."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from linepose.config.experiments import RuleSection, SubsetSection
+from linepose.errors import InputError
+from linepose.experiments.accepted import Accepted, read_reference
+from linepose.pose import POSE_COLUMNS
+from linepose.result_schemas import LAPLACE_SIGMA_COLUMNS, OPTIMA, SAMPLES
+from linepose.storage import write_table
+
+
+@pytest.fixture
+def data(gaussian):
+    """Observation 7 of twelve was rejected."""
+    return Accepted(gaussian, gaussian.select([1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12]))
+
+
+def test_listed_and_drawn_subsets(data):
+    listed = SubsetSection(observations=[5, 3, 9])
+    drawn = SubsetSection(rules=[RuleSection(angle="roll", count=11)])
+    found = data.subsets({"listed": listed, "drawn": drawn}, "robot.yaml: subsets")
+    assert found["listed"] == (5, 3, 9)
+    assert found["drawn"] == (1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12)
+
+
+@pytest.mark.parametrize(
+    ("section", "told"),
+    [
+        (SubsetSection(observations=[1, 7]), "observation 7, which was rejected as an outlier"),
+        (SubsetSection(observations=[1, 13]), "observation 13, which does not exist"),
+        (SubsetSection(rules=[RuleSection(angle="roll", count=12)]), "11 observations with 0 <= |roll| < 180 deg"),
+    ],
+)
+def test_subset_that_cannot_be_used_names_its_key(data, section, told):
+    with pytest.raises(InputError) as caught:
+        data.subsets({"bad": section}, "robot.yaml: subsets")
+    assert str(caught.value).startswith(f"robot.yaml: subsets.bad: found {told}")
+
+
+def test_reference_is_the_inliers_optimum_with_their_samples_covariance(gaussian, tmp_path):
+    random = np.random.default_rng(1)
+    optima = pd.DataFrame(random.random((2, 6)), columns=POSE_COLUMNS)
+    optima[list(LAPLACE_SIGMA_COLUMNS)] = 1.0
+    rest = {name: 1 for name in OPTIMA.names if name not in optima}
+    optima = optima.assign(**(rest | {"converged": True, "stage": ["all", "inliers"]}))
+    write_table(optima, tmp_path / "optima.parquet", OPTIMA)
+    samples = random.standard_normal((40, 6)) @ random.standard_normal((6, 6))
+    chain = pd.DataFrame(samples, columns=POSE_COLUMNS).assign(log_likelihood=0.0)
+    chain["step"], chain["walker"] = np.divmod(np.arange(40), 8)
+    write_table(chain, tmp_path / "mcmc" / "inliers.parquet", SAMPLES)
+    reference = read_reference(gaussian, tmp_path / "optima.parquet", tmp_path / "mcmc")
+    np.testing.assert_array_equal(reference.pose, optima.loc[1, list(POSE_COLUMNS)].to_numpy(dtype=float))
+    deviation = samples - samples.mean(axis=0)
+    np.testing.assert_allclose(reference.covariance, deviation.T @ deviation / 39, rtol=1e-12)
+    reference.pose[0] = 0.0  # its own: writable

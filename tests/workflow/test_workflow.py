@@ -1,0 +1,132 @@
+import shutil
+
+import numpy as np
+import pandas as pd
+import pytest
+from tiny_project import STUDY, TINY, Project, lines_with
+
+from linepose.pose import POSE_COLUMNS
+
+pytestmark = pytest.mark.workflow
+
+
+def test_every_result_is_made(finished):
+    made = set(finished.results())
+    stages = ["points", "observations", "outliers", "optima", "pose", "diagnostics", "truth", "truth_error"]
+    assert {f"tiny/{stage}.parquet" for stage in stages} <= made
+    assert {"regression.parquet", "tiny/mcmc/all.parquet", "tiny/mcmc/inliers.parquet"} <= made
+
+
+def test_pose_is_that_of_the_simulation(finished):
+    results = finished.folder / "results" / "tiny"
+    pose = pd.read_parquet(results / "optima.parquet").set_index("stage").loc["all", list(POSE_COLUMNS)]
+    truth = pd.read_parquet(results / "truth.parquet")[list(POSE_COLUMNS)].iloc[0]
+    # four views leave the pose open by decimetres along the line of sight, and tight enough in the rotation
+    assert np.linalg.norm((pose - truth)[:3].astype(float)) < 0.4
+    assert np.linalg.norm((pose - truth)[3:].astype(float)) < 0.1
+
+
+def test_points_are_those_of_the_simulation(finished):
+    results = finished.folder / "results" / "tiny"
+    points = pd.read_parquet(results / "points.parquet")
+    truth = pd.read_parquet(results / "truth.parquet").query("visible")
+    both = points.merge(truth, on=["observation", "point"], suffixes=("", "_true"))
+    assert len(both) == len(points) == 60
+    np.testing.assert_allclose(both["u_px"], both["u_px_true"], atol=0.2)
+    np.testing.assert_allclose(both["line"], both["line_true"], atol=0.3)
+
+
+def test_nothing_is_left_to_do_after_a_run(finished):
+    run = finished.run("--dry-run")
+    assert run.returncode == 0
+    assert "Nothing to be done" in run.stdout + run.stderr
+
+
+def test_one_core_makes_the_same_bytes_as_two(finished, tmp_path):
+    project = Project(tmp_path)
+    project.configure(STUDY, {"tiny": TINY})
+    run = project.run(cores=1)
+    assert run.returncode == 0, run.stderr
+    ours, theirs = project.results(), finished.results()
+    assert set(ours) == set(theirs)
+    assert [path for path in ours if ours[path] != theirs[path]] == []
+
+
+@pytest.mark.parametrize(
+    ("study", "platform", "told"),
+    [
+        (STUDY | {"sampling": {"n_walker": 14}}, TINY, "sampling.n_walker: found an unknown key"),
+        (STUDY, TINY | {"navigation": {"asociation": "nearest"}}, "did you mean association?"),
+        (STUDY, TINY | {"simulation": TINY["simulation"] | {"seeds": 1}}, "tiny.yaml: simulation.seeds"),
+        (STUDY | {"platforms": ["tiny", "tinny"]}, TINY, "tinny.yaml: found no such file"),
+        (STUDY, TINY | {"source": {"kind": "scans", "dataset": "gone"}, "simulation": None}, "found no folder gone"),
+    ],
+)
+def test_wrong_configuration_is_one_line_and_spares_the_results(copied, study, platform, told):
+    before = copied.results()
+    copied.configure(study, {"tiny": platform})
+    run = copied.run()
+    assert run.returncode != 0
+    assert len(lines_with(told, run.stderr)) == 1, run.stderr
+    assert "Traceback" not in run.stderr
+    assert copied.results() == before
+
+
+def recorded(project, name):
+    """The simulated survey as a platform of the user's own, with its files in a data folder."""
+    shutil.copytree(project.folder / "results" / "tiny" / "simulated", project.folder / "data" / name)
+    return TINY | {"simulation": None, "source": {"kind": "scans", "dataset": name, "points": "detection"}}
+
+
+def test_own_scans_without_labels_while_another_platform_fails(copied):
+    own, bad = recorded(copied, "own"), recorded(copied, "bad")
+    data = copied.folder / "data"
+    (data / "own" / "labels.csv").unlink()
+    scan = data / "bad" / "scans" / "observation-02.bil"
+    scan.write_bytes(scan.read_bytes()[:-1000])
+    before = copied.results()
+    copied.configure(STUDY | {"platforms": ["tiny", "own", "bad"]}, {"tiny": TINY, "own": own, "bad": bad})
+    run = copied.run("--keep-going")
+    assert run.returncode != 0
+    assert len(lines_with("observation-02.bil: found", run.stderr)) == 1, run.stderr
+    assert "truncated" in run.stderr
+    assert "Traceback" not in run.stderr
+    after = copied.results()
+    assert {path: after[path] for path in before if path.startswith("tiny/")} == {
+        path: content for path, content in before.items() if path.startswith("tiny/")
+    }
+    # found without labels: the same points in the same places, so the same pose to the last bit or nearly so
+    poses = [
+        pd.read_parquet(copied.folder / "results" / name / "optima.parquet")[list(POSE_COLUMNS)].to_numpy()[0]
+        for name in ("tiny", "own")
+    ]
+    np.testing.assert_allclose(poses[0], poses[1], atol=0.05)
+    assert not (copied.folder / "results" / "bad" / "points.parquet").exists()
+
+
+def test_file_that_is_missing_from_own_data_is_one_line(copied):
+    own = recorded(copied, "own")
+    (copied.folder / "data" / "own" / "navigation.parquet").unlink()
+    before = copied.results()
+    copied.configure(STUDY | {"platforms": ["own"]}, {"own": own})
+    run = copied.run()
+    assert run.returncode != 0
+    assert "navigation.parquet" in run.stderr
+    assert "Traceback" not in run.stderr
+    assert {path: content for path, content in copied.results().items() if path in before} == before
+
+
+def test_simulated_platforms_run_when_the_field_data_cannot_be_had(tmp_path):
+    project = Project(tmp_path)
+    project.configure(
+        STUDY | {"platforms": ["ladybird", "tiny"], "datasets": {"ladybird": "config/datasets/nowhere.yaml"}},
+        {"tiny": TINY},
+    )
+    (tmp_path / "config" / "datasets" / "nowhere.yaml").write_text(
+        "base_url: http://127.0.0.1:9/\nsha256: {nav_covs.csv: " + "0" * 64 + "}\n"
+    )
+    run = project.run("--dry-run")
+    assert run.returncode == 0, run.stderr
+    told = "data set ladybird: not in data and not to be downloaded; only the other platforms run: tiny"
+    assert len(lines_with(told, run.stderr + run.stdout)) == 1, run.stderr
+    assert "results/ladybird/" not in run.stdout + run.stderr

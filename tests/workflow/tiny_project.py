@@ -1,0 +1,72 @@
+"""A tiny simulated platform, from scans to the pose, and the workflow run on it as a user does."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+ROOT = Path(__file__).parents[2]
+STUDY = {
+    "platforms": ["tiny"],
+    "data_folders": ["data"],
+    "outliers": {"minimum_observations": 3, "threshold_px": 50.0},
+    "sampling": {"n_walkers": 14, "n_burn_in": 5, "n_steps": 12},
+}
+PASSES = [
+    {"north_m": -2.85, "east_m": -0.55, "heading_deg": 21, "speed_m_s": -0.5, "duration_s": 4},
+    {"north_m": -1.47, "east_m": -2.49, "heading_deg": 67, "speed_m_s": -0.5, "duration_s": 4},
+    {"north_m": 2.86, "east_m": -0.65, "heading_deg": 159, "speed_m_s": -0.5, "duration_s": 4},
+    {"north_m": 0.27, "east_m": 2.91, "heading_deg": -102, "speed_m_s": -0.5, "duration_s": 4},
+]
+TINY = {
+    "like": "ladybird-sim",
+    "published": None,
+    "simulation": {
+        "passes": PASSES,
+        "faults": [],
+        "transfer_s": 2.0,
+        "image": {"supersampling": 2, "margin_share": 0.4},
+    },
+}
+
+
+@dataclass(frozen=True)
+class Project:
+    """A folder with a configuration of its own, in which the workflow runs."""
+
+    folder: Path
+
+    def configure(self, study: Mapping[str, Any], platforms: Mapping[str, Mapping[str, Any]]) -> None:
+        config = self.folder / "config"
+        shutil.copytree(ROOT / "config", config, dirs_exist_ok=True)
+        (config / "config.yaml").write_text(yaml.safe_dump(dict(study)))
+        for name, values in platforms.items():
+            (config / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(dict(values)))
+
+    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]
+        path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
+        return subprocess.run(
+            [*command, *arguments],
+            cwd=self.folder,
+            env=os.environ | {"PYTHONPATH": path},
+            capture_output=True,
+            text=True,
+            timeout=600,
+            check=False,
+        )
+
+    def results(self) -> dict[str, bytes]:
+        """Every Parquet result by its path."""
+        folder = self.folder / "results"
+        return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*.parquet"))}
+
+
+def lines_with(text: str, error: str) -> list[str]:
+    return [line for line in error.splitlines() if text in line]
