@@ -5,7 +5,7 @@ CORES ?= 2
 BIN := .venv/bin
 STAMP := .venv/installed
 
-.PHONY: help reproduce test check bench reference lock clean
+.PHONY: help reproduce test check bench reference images lock clean
 
 help: ## What can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -34,6 +34,9 @@ bench: $(STAMP) ## Measure speed on this machine
 
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
 	$(BIN)/python -m linepose.config.reference
+
+images: $(STAMP) ## Take the README's pictures from results/ladybird/figures
+	$(BIN)/python -m linepose.report.pictures
 
 lock: ## Take the newest versions that fit pyproject.toml into requirements.lock
 	rm -rf .venv-lock

@@ -9,7 +9,7 @@ from typing import Any
 
 from linepose.errors import LineposeError
 
-_HUSHED = ("numba", "matplotlib", "PIL")
+_HUSHED = ("numba", "matplotlib", "fontTools", "PIL")
 
 
 @contextmanager

@@ -45,7 +45,8 @@ class CatalogueEntry:
 def _mapping(r: PlatformResults) -> Figure:
     points = r.table("estimated_points", result_schemas.ESTIMATED_POINTS)
     mapped = r.table("mapping", experiment_schemas.MAPPING)
-    return mapping.mapping(mapped, points, r.table("observations", result_schemas.OBSERVATIONS), r.accepted()[0])
+    observations = r.table("observations", result_schemas.OBSERVATIONS)
+    return mapping.mapping(mapped, points, observations, r.accepted()[0], r.true_points_m)
 
 
 def _angle_error(r: PlatformResults) -> Figure:

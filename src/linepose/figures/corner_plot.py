@@ -16,6 +16,7 @@ from linepose.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.rotations import Floats
 
 LABELS = ("$r_x$ (m)", "$r_y$ (m)", "$r_z$ (m)", r"$\theta e_x$ (rad)", r"$\theta e_y$ (rad)", r"$\theta e_z$ (rad)")
+_TICK_MARGIN = 0.12
 _SHADE = "#777777"
 _MARKS = {"optimum": (ESTIMATE, "s"), "hand measured": (HAND_MEASURED, "D"), "truth": (TRUTH, "o")}
 
@@ -73,9 +74,10 @@ def _label(figure: Figure) -> None:
             one.grid(visible=False)
             one.tick_params(labelsize=6, length=2, pad=1)
             one.tick_params(axis="x", labelrotation=45)
-            one.xaxis.set_major_locator(MaxNLocator(3, prune="both"))
+            one.tick_params(axis="y", labelrotation=0)
+            one.set_xticks(_inner_ticks(*one.get_xlim()))
             if row > column:
-                one.yaxis.set_major_locator(MaxNLocator(3, prune="both"))
+                one.set_yticks(_inner_ticks(*one.get_ylim()))
             if row == N_PARAMETERS - 1:
                 one.set_xlabel(LABELS[column])
                 one.xaxis.set_label_coords(0.5, -0.55)
@@ -83,6 +85,12 @@ def _label(figure: Figure) -> None:
                 one.set_ylabel(LABELS[row])
                 one.yaxis.set_label_coords(-0.5, 0.5)
     figure.subplots_adjust(left=0.13, bottom=0.115, right=0.975, top=0.99, wspace=0.06, hspace=0.06)
+
+
+def _inner_ticks(low: float, high: float) -> list[float]:
+    """Round numbers that keep clear of the panel's ends, where the next panel's labels are."""
+    margin = _TICK_MARGIN * (high - low)
+    return [float(tick) for tick in MaxNLocator(4).tick_values(low, high) if low + margin <= tick <= high - margin]
 
 
 def corner_plot_caption(samples: pd.DataFrame) -> str:

@@ -10,7 +10,7 @@ from matplotlib.patches import Ellipse
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.figures.checks import usable_rows
 from linepose.figures.plane_view import PlaneView, plane_view
-from linepose.figures.style import GREEN, GREY, HALF_PAGE_IN, RED, blank_figure, few_ticks, styled
+from linepose.figures.style import BLACK, GREEN, GREY, HALF_PAGE_IN, RED, blank_figure, few_ticks, styled
 from linepose.observations import POSITION_COLUMNS
 from linepose.plane import fit_plane
 from linepose.rotations import Floats
@@ -21,11 +21,17 @@ _MARGIN_SHARE = 0.08
 
 
 @styled
-def mapping(mapped: pd.DataFrame, estimated: pd.DataFrame, observations: pd.DataFrame, example: int) -> Figure:
+def mapping(
+    mapped: pd.DataFrame,
+    estimated: pd.DataFrame,
+    observations: pd.DataFrame,
+    example: int,
+    true_points_m: Floats | None = None,
+) -> Figure:
     """Above all projections before (grey) and after (red) and the estimates; below one observation, 1-sigma ellipses.
 
     `mapped` as in `experiment_schemas.MAPPING`, `estimated` as in `result_schemas.ESTIMATED_POINTS`, `observations` as
-    in `OBSERVATIONS` says where the viewer stands.
+    in `OBSERVATIONS` says where the viewer stands; true points (M, 3) in map coordinates are circled where known.
     """
     view, points = _view(estimated, observations)
     before, after = (_poses(mapped, name) for name in ("hand_measured", "calibrated"))
@@ -38,6 +44,10 @@ def mapping(mapped: pd.DataFrame, estimated: pd.DataFrame, observations: pd.Data
         flat = view.flat(table[list(PROJECTED_COLUMNS)])
         upper.scatter(flat[:, 0], flat[:, 1], s=size, color=colour, linewidths=0, label=label)
     upper.plot(*points.T, "+", color=GREEN, markersize=7, markeredgewidth=1.3, label="estimated points")
+    if true_points_m is not None:
+        truth = view.flat(true_points_m)
+        for panel in (upper, lower):
+            panel.plot(*truth.T, "o", color=BLACK, markersize=8, markeredgewidth=0.7, fillstyle="none", label="truth")
     upper.set_title("all observations", loc="left")
     one = after[after["observation"] == example]
     for centre, covariance in zip(view.flat(one[list(PROJECTED_COLUMNS)]), _covariances(one, view), strict=True):

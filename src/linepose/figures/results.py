@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from linepose.config.platform import Platform
 from linepose.figures.checks import stage_row
-from linepose.observations import Survey, survey_from_table
+from linepose.observations import POSITION_COLUMNS, Survey, survey_from_table
 from linepose.outliers import stage_observations
 from linepose.pose import POSE_COLUMNS
 from linepose.result_schemas import OBSERVATIONS, OUTLIERS, POSE, SAMPLES
@@ -34,6 +34,15 @@ class PlatformResults:
         """The true pose (6,) of a simulated platform."""
         simulation = self.platform.simulation
         return None if simulation is None else np.array(simulation.true_pose)
+
+    @property
+    def true_points_m(self) -> Floats | None:
+        """The pattern's true points (M, 3) in map coordinates, of a simulated platform."""
+        if not self.has("truth"):
+            return None
+        columns = [f"point_{name}" for name in POSITION_COLUMNS]
+        truth = self.table("truth", pa.schema([pa.field(name, pa.float64()) for name in ("point", *columns)]))
+        return np.array(truth.groupby("point")[columns].first())
 
     def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
         """A result by its name below the folder; raises InputError where it is missing or lacks columns."""

@@ -86,12 +86,12 @@ def _draw_sphere(axes: Axes3D, pole: Floats) -> None:
     axes.plot_wireframe(np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v), color=GREY, linewidth=0.25, alpha=0.6)
     for direction, name in zip(np.eye(3), ("x", "y", "z"), strict=True):
         axes.plot(*np.stack([np.zeros(3), direction]).T, color=BLACK, linewidth=0.8)
-        axes.text(*(1.25 * direction), name, fontsize=7, ha="center", va="center")
+        axes.text(*(1.15 * direction), name, fontsize=7, ha="center", va="center")
     axes.plot(*np.stack([np.zeros(3), pole]).T, color=ESTIMATE, linewidth=1.0)
     axes.view_init(
         elev=float(np.degrees(np.arcsin(pole[2]))) + 30, azim=float(np.degrees(np.arctan2(pole[1], pole[0]))) + 40
     )
-    axes.set_box_aspect((1, 1, 1), zoom=1.6)
+    axes.set_box_aspect((1, 1, 1), zoom=1.45)
     axes.set_axis_off()
 
 

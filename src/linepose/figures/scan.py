@@ -15,7 +15,7 @@ Intensity = NDArray[np.float32]
 
 _COLUMNS = ("point", "u_px", "line")
 _CONTRAST = (0.005, 0.995)  # quantiles shown as black and white
-_MARGIN_SHARE = 0.12
+_MARGIN_SHARE = 0.2  # of the points' extent: their rings and the sheet's edge
 _TALLEST = 1.8
 
 

@@ -11,6 +11,7 @@ from PIL import Image, UnidentifiedImageError
 from linepose.errors import InputError
 
 _COLOURS: Final = 128
+_README_PICTURES: Final = ("outliers", "corner", "mapping")
 
 
 @dataclass(frozen=True)
@@ -39,3 +40,14 @@ def reduced(path: Path) -> Image.Image:
     except (OSError, UnidentifiedImageError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "a PNG file", "delete the figures' folder and run again") from None
+
+
+def write_readme_pictures(figures: Path, folder: Path) -> None:
+    """Write the README's pictures, small, from a platform's figures."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in _README_PICTURES:
+        reduced(figures / f"{name}.png").save(folder / f"{name}.png", optimize=True)
+
+
+if __name__ == "__main__":
+    write_readme_pictures(Path("results/ladybird/figures"), Path("docs/images"))

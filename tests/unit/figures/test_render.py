@@ -1,0 +1,111 @@
+"""All figures of a platform on disk: which are drawn, what stands in the place of the others, the same bytes again."""
+
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from linepose.figures.catalogue import FIGURES
+from linepose.figures.render import render_figures
+from linepose.figures.results import PlatformResults
+from linepose.figures.style import HALF_PAGE_IN, PNG_DPI, blank_figure, save
+from linepose.result_schemas import FIGURES as SCHEMA
+from linepose.storage import write_table
+
+from .. import made_up
+
+WITHOUT_SCANS = {"stacked_scan", "labelled_points"}
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made_up")
+    made_up.write_results(folder)
+    index = render_figures(PlatformResults("made_up", made_up.platform(), folder, 5.0), folder / "figures")
+    return folder, index
+
+
+def test_every_figure_is_drawn_or_has_a_sentence_in_its_place(drawn):
+    folder, index = drawn
+    assert list(index["figure"]) == [entry.name for entry in FIGURES]
+    assert set(index.loc[index["left_out"] != "", "figure"]) == WITHOUT_SCANS
+    files = {path.name for path in (folder / "figures").iterdir()}
+    shown = set(index["figure"]) - WITHOUT_SCANS
+    assert files == {f"{name}.{kind}" for name in shown for kind in ("png", "pdf")}
+    assert all(index.loc[index["left_out"] == "", "caption"].str.endswith("."))
+    write_table(index, folder / "index.parquet", SCHEMA)
+
+
+def test_a_broken_chain_costs_its_figures_and_no_other(drawn, tmp_path):
+    made_up.write_results(tmp_path)
+    chain = made_up.samples()
+    chain.loc[7, "theta_x_rad"] = float("nan")
+    chain.to_parquet(tmp_path / "mcmc" / "inliers.parquet")
+    index = render_figures(PlatformResults("made_up", made_up.platform(), tmp_path, 5.0), tmp_path / "figures")
+    left_out = index.set_index("figure")["left_out"]
+    lost = {"corner", "rotation_axis", "platform_sketch", "trace", "autocorrelation"}
+    assert set(left_out[left_out != ""].index) == WITHOUT_SCANS | lost
+    assert "theta_x_rad" in left_out["corner"]
+    assert not any((tmp_path / "figures" / f"{name}.png").exists() for name in lost)
+
+
+def test_what_was_not_asked_for_is_said_and_what_is_missing_is_named(tmp_path):
+    made_up.write_results(tmp_path)
+    (tmp_path / "uncertainty.parquet").unlink()
+    platform = made_up.platform(outline=None, experiments={"basin": None, "mapping": None, "repeatability": None})
+    index = render_figures(PlatformResults("made_up", platform, tmp_path, 5.0), tmp_path / "figures")
+    left_out = index.set_index("figure")["left_out"]
+    for name, word in {
+        "basin": "experiments.basin",
+        "mapping": "experiments.mapping",
+        "angle_error": "experiments.mapping",
+        "repeatability": "splits",
+        "platform_sketch": "outline",
+        "stacked_scan": "no scans",
+        "uncertainty": "no such file",
+    }.items():
+        assert word in left_out[name]
+
+
+def test_pictures_have_the_stated_size(drawn):
+    folder, _ = drawn
+    with Image.open(folder / "figures" / "mapping.png") as image:
+        assert image.width == HALF_PAGE_IN * PNG_DPI
+        assert "Software" not in image.info
+
+
+_REDRAW = """
+import sys
+from pathlib import Path
+from linepose.figures.render import render_figures
+from linepose.figures.results import PlatformResults
+sys.path.insert(0, sys.argv[1])
+from unit import made_up
+folder = Path(sys.argv[2])
+render_figures(PlatformResults("made_up", made_up.platform(), folder, 5.0), Path(sys.argv[3]))
+"""
+
+
+def test_another_process_draws_the_same_bytes(drawn, tmp_path):
+    folder, _ = drawn
+    environment = os.environ | {"PYTHONHASHSEED": "77", "OMP_NUM_THREADS": "1", "SOURCE_DATE_EPOCH": "1"}
+    tests = Path(__file__).parents[2]
+    subprocess.run([sys.executable, "-c", _REDRAW, tests, folder, tmp_path], check=True, env=environment)
+    assert digests(tmp_path) == digests(folder / "figures")
+
+
+def digests(folder):
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(folder.iterdir())}
+
+
+def test_a_figure_that_cannot_be_written_leaves_nothing(tmp_path):
+    figure = blank_figure(1.0, 1.0)
+    figure.add_subplot().set_xlabel("$broken")
+    figure.axes[0].set_ylabel(r"$\nosuchcommand$")
+    with pytest.raises(ValueError, match="nosuchcommand"):
+        save(figure, tmp_path / "broken")
+    assert list(tmp_path.iterdir()) == []

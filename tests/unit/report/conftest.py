@@ -1,0 +1,36 @@
+import pytest
+
+from linepose.figures.render import render_figures
+from linepose.figures.results import PlatformResults
+from linepose.report.page import (
+    PlatformOnPage,
+    figures_on_page,
+    regression_on_page,
+    render_page,
+    settings_text,
+    table_on_page,
+    versions,
+)
+from linepose.report.summary import summarise
+
+from .. import made_up
+from .made_up_page import REGRESSION
+
+
+@pytest.fixture(scope="session")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made_up")
+    made_up.write_results(folder)
+    return PlatformResults("made-up", made_up.platform(description="Fast & <made up>"), folder, 5.0)
+
+
+@pytest.fixture(scope="session")
+def page(results):
+    """The whole report of one made-up platform."""
+    folder = results.folder / "figures"
+    index = render_figures(results, folder)
+    settings = settings_text(results.platform.model_dump(mode="json"))
+    one = PlatformOnPage(summarise(results), figures_on_page(results.name, folder, index), settings)
+    study = settings_text({"data_folders": ["data", "/home/someone/private/data"], "seed": 1})
+    tables = [table_on_page("table3", made_up.pose())]
+    return render_page([one], regression_on_page(REGRESSION), tables, study, versions())
