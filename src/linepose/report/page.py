@@ -178,4 +178,5 @@ def render_page(
 
 def _number(value: float, of: PoseNumber) -> str:
     """A number to the digits that its unit deserves: tenths of millimetres, hundredths of degrees."""
-    return f"{value:.{2 if of.unit == '°' else 4}f}"
+    digits = 2 if of.unit == "°" else 4
+    return f"{round(value, digits) + 0.0:.{digits}f}"  # never -0.00

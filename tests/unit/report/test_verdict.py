@@ -50,7 +50,12 @@ def test_everything_in_order_says_use_it_and_asks_for_nothing():
         ({"reduced_chi_square": 1.6}, "Size of the residuals", Level.CARE, "covariances"),
         ({"reduced_chi_square": 2.5}, "Size of the residuals", Level.BAD, "covariances"),
         ({"reduced_chi_square": 0.44}, "Size of the residuals", Level.CARE, "columns"),
-        ({"alike_in_a_view": 0.31}, "Independence within a view", Level.CARE, "lower bounds"),
+        (
+            {"alike_in_a_view": 0.31, "sigma_factor": None},
+            "Independence within a view",
+            Level.CARE,
+            "lower bounds",
+        ),
         ({"tilt_spread_deg": 1.4}, "Angular diversity", Level.CARE, "rolled or pitched"),
         ({"undecided": ("down, r_z",)}, "Angular diversity", Level.CARE, "rolled or pitched"),
         ({"worst_error_px": 4.7}, "Worst observation", Level.CARE, "observation 24"),
@@ -89,3 +94,9 @@ def test_what_is_not_known_is_not_judged():
 
 def test_a_parameter_that_only_the_tape_knows_is_named():
     assert "down, r_z" in named(judge(replace(FINE, undecided=("down, r_z",))), "Angular diversity").found
+
+
+def test_errors_in_common_do_no_harm_where_halves_agree():
+    check = named(judge(replace(FINE, alike_in_a_view=0.9, sigma_factor=1.0)), "Independence within a view")
+    assert check.level == Level.GOOD
+    assert "90 %" in check.found
