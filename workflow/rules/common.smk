@@ -32,7 +32,7 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
-PLATFORMS = list(PROJECT.platforms)
+PLATFORMS = [name for name in STUDY.platforms if name in PROJECT.platforms]
 
 
 wildcard_constraints:
