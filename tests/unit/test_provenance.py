@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import linepose
-from linepose.provenance import source_digest
+from linepose.provenance import files_digest, source_digest
 
 LIBRARY = Path(linepose.__file__).parent
 
@@ -88,3 +88,13 @@ def test_library_has_no_relative_import_which_the_digest_would_miss():
     for path in LIBRARY.rglob("*.py"):
         relative = [n for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.ImportFrom) and n.level]
         assert not relative, path
+
+
+def test_digest_of_a_folder_follows_its_files(copied, monkeypatch):
+    package, _ = copied
+    monkeypatch.setattr("linepose.provenance._PACKAGE", package)
+    before = files_digest("report/templates")
+    assert files_digest("report/templates") == before
+    style = package / "report" / "templates" / "style.css"
+    style.write_text(style.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    assert files_digest("report/templates") != before

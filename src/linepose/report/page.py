@@ -137,7 +137,9 @@ def versions() -> dict[str, str]:
 
 def settings_text(values: Mapping[str, Any]) -> str:
     """Settings as YAML; of an absolute path only its last part, because a report travels."""
-    return yaml.safe_dump(_without_folders(dict(values)), sort_keys=False, allow_unicode=True, width=80).strip()
+    return yaml.safe_dump(
+        _without_folders(dict(values)), sort_keys=False, allow_unicode=True, width=80, default_flow_style=None
+    ).strip()
 
 
 def _without_folders(value: Any) -> Any:

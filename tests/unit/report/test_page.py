@@ -134,7 +134,7 @@ def test_published_numbers_are_grouped_with_their_outcome():
 
 def test_settings_keep_values_and_lose_folders():
     text = settings_text({"a": {"b": ["/x/y/z", "rel/z", 1.5]}, "n": None})
-    assert text == "a:\n  b:\n  - '.../z'\n  - rel/z\n  - 1.5\nn: null"
+    assert text == "a:\n  b: ['.../z', rel/z, 1.5]\nn: null"
 
 
 def test_evidence_is_gathered_from_the_results(results):
