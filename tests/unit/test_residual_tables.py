@@ -70,3 +70,9 @@ def test_views_of_one_point_say_nothing_of_what_they_share():
 def test_views_of_different_size_that_are_each_constant_share_everything():
     table = pd.DataFrame({"observation": [1, 1, 2, 2, 2], "error_u_px": [1.0, 1.0, 4.0, 4.0, 4.0]})
     assert alike_in_a_view(table, "error_u_px") == pytest.approx(1.0)
+
+
+def test_what_two_small_views_share_is_that_of_the_analysis_of_variance():
+    # means 1 and 5 of two: mean squares 2 (4 + 4) = 16 between and 4 / 2 = 2 within, (16 - 2) / (16 + 2)
+    table = pd.DataFrame({"observation": [1, 1, 2, 2], "error_u_px": [0.0, 2.0, 4.0, 6.0]})
+    assert alike_in_a_view(table, "error_u_px") == pytest.approx(14 / 18)
