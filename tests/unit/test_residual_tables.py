@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 
 from linepose.likelihood.base import Residuals
-from linepose.observations import POSITION_COLUMNS
+from linepose.observations import POSITION_COLUMNS, survey_from_table
 from linepose.residual_tables import POINT_COVARIANCE_COLUMNS, alike_in_a_view, residual_tables
 from linepose.result_schemas import ESTIMATED_POINTS, RESIDUALS
 from linepose.storage import write_table
@@ -30,8 +30,6 @@ class FixedLikelihood:
 
 
 def test_tables_hold_each_residual_and_point_of_each_stage(tmp_path):
-    from linepose.observations import survey_from_table
-
     likelihood = FixedLikelihood(survey_from_table(made_up.observations()))
     stages = {"all": [1, 2, 3], "inliers": [3, 1]}
     residuals, points = residual_tables(likelihood, stages, {"all": [0.0], "inliers": [0.5]})

@@ -12,6 +12,7 @@ from PIL import Image
 
 from linepose.errors import InputError
 from linepose.figures.catalogue import FIGURES
+from linepose.observations import survey_from_table
 from linepose.report.page import regression_on_page, settings_text
 from linepose.report.pictures import embedded
 from linepose.report.summary import gather_evidence, summarise, tilt_spread_deg
@@ -151,8 +152,6 @@ def test_evidence_is_gathered_from_the_results(results):
 
 def test_tilt_spread_of_level_observations_is_zero():
     table = made_up.observations().assign(roll_rad=0.0, pitch_rad=0.0)
-    from linepose.observations import survey_from_table
-
     assert tilt_spread_deg(survey_from_table(table)) == pytest.approx(0.0, abs=1e-12)
 
 
