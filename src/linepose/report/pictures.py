@@ -11,6 +11,7 @@ from PIL import Image, UnidentifiedImageError
 from linepose.errors import InputError
 
 _COLOURS: Final = 128
+_COMPRESSION: Final = 6  # zlib level: 9 takes six times as long for a tenth less
 _README_PICTURES: Final = ("outliers", "corner", "mapping")
 
 
@@ -27,7 +28,7 @@ def embedded(path: Path) -> Picture:
     """A PNG file as a picture that needs no file; raises InputError where it cannot be read."""
     image = reduced(path)
     stream = io.BytesIO()
-    image.save(stream, format="PNG", optimize=False, compress_level=9)
+    image.save(stream, format="PNG", compress_level=_COMPRESSION)
     encoded = base64.b64encode(stream.getvalue()).decode("ascii")
     return Picture(f"data:image/png;base64,{encoded}", image.width, image.height)
 
