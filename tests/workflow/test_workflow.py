@@ -57,7 +57,11 @@ def test_one_core_makes_the_same_bytes_as_two(finished, tmp_path):
     [
         (STUDY | {"sampling": {"n_walker": 14}}, TINY, "sampling.n_walker: found an unknown key"),
         (STUDY, TINY | {"navigation": {"asociation": "nearest"}}, "did you mean association?"),
-        (STUDY, TINY | {"simulation": TINY["simulation"] | {"seeds": 1}}, "tiny.yaml: simulation.seeds"),
+        (
+            STUDY,
+            TINY | {"simulation": TINY["simulation"] | {"seeds": 1}},
+            "tiny.yaml: simulation.seeds: found an unknown key",
+        ),
         (STUDY | {"platforms": ["tiny", "tinny"]}, TINY, "tinny.yaml: found no such file"),
         (STUDY, TINY | {"source": {"kind": "scans", "dataset": "gone"}, "simulation": None}, "found no folder gone"),
     ],

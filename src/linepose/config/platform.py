@@ -1,5 +1,6 @@
 """The platform file: one camera on one vehicle, what it recorded, and how its data are to be read."""
 
+import difflib
 import glob
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,6 +13,7 @@ from pydantic import (
     Field,
     PositiveFloat,
     PositiveInt,
+    TypeAdapter,
     WithJsonSchema,
     field_validator,
     model_validator,
@@ -144,7 +146,25 @@ class ScansSection(Section):
 
 
 def _simulation(values: Any) -> Any:
-    return settings_from_dict(values, "simulation") if isinstance(values, Mapping) else values
+    if not isinstance(values, Mapping):
+        return values
+    try:
+        return settings_from_dict(values, "simulation")
+    except InputError as error:
+        if error.expected != _UNKNOWN_KEY:
+            raise
+        near = difflib.get_close_matches(error.place.rsplit(".", 1)[-1], _keys(SimulationSettings), n=1)
+        remedy = f"did you mean {near[0]}?" if near else "remove it"
+        raise InputError(error.place, "an unknown key", "a key of linepose.simulate.settings", remedy) from None
+
+
+_UNKNOWN_KEY = "Unexpected keyword argument"  # pydantic's words for what a closed dataclass has no field for
+
+
+def _keys(settings: type) -> list[str]:
+    """Every key below these settings."""
+    schema = TypeAdapter(settings).json_schema()
+    return sorted({key for part in (schema, *schema["$defs"].values()) for key in part["properties"]})
 
 
 # closed by its own check; the keys, with units in their names, are the fields of the settings' classes

@@ -26,6 +26,8 @@ def validated(model: type[Model], values: Any, place: str) -> Model:
         faults = error.errors()
         unknown = next((fault for fault in faults if fault["type"] == "extra_forbidden"), None)
         raise _one_line(model, unknown or faults[0], place) from None  # a misspelt key explains why one is missing
+    except InputError as error:  # of a section that another part of the library checks
+        raise InputError(f"{place}: {error.place}", error.found, error.expected, error.remedy) from None
 
 
 def _one_line(model: type[Section], fault: ErrorDetails, place: str) -> InputError:

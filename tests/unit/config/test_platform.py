@@ -1,4 +1,5 @@
 from copy import deepcopy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from linepose.config.platform import Platform, load_platform, read_yaml
 from linepose.errors import InputError
 
+PLATFORMS = Path(__file__).parents[3] / "config" / "platforms"
 VALUES = {
     "camera": {"focal_length_m": 8e-3, "pixel_pitch_m": 8e-6, "n_pixels": 640, "principal_point_px": 320.0, "k1": 0.1},
     "hand_measured": {"position_m": [0.1, 0.2, -0.3], "euler_deg": [10.0, 20.0, -90.0]},
@@ -226,3 +228,19 @@ def test_ladybird_attitude_measures_the_same_under_other_columns(ladybird, platf
 
 def test_platform_survives_the_way_through_a_rules_parameters(ladybird):
     assert Platform.model_validate(ladybird.model_dump(mode="json")) == ladybird
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"seeds": 1}, "simulation.seeds: found an unknown key, .* did you mean seed"),
+        ({"image": {"n_bandss": 4}}, "simulation.image.n_bandss: found an unknown key, .* did you mean n_bands"),
+        ({"seed": "many"}, "simulation.seed: found 'many'"),
+    ],
+)
+def test_simulation_is_closed_and_told_with_its_file(tmp_path, change, told):
+    for name in ("ladybird-sim", "ladybird"):
+        (tmp_path / f"{name}.yaml").write_text((PLATFORMS / f"{name}.yaml").read_text())
+    (tmp_path / "robot.yaml").write_text(yaml.safe_dump({"like": "ladybird-sim", "simulation": change}))
+    with pytest.raises(InputError, match=f"robot.yaml: {told}"):
+        load_platform(tmp_path, "robot")
