@@ -9,7 +9,7 @@ import pandas as pd
 
 from linepose.errors import InputError
 from linepose.extraction.scans import Scan
-from linepose.simulate.board import N_POINTS
+from linepose.pattern import N_POINTS
 
 _COLUMNS: Final = ("observation", "point", "u_px", "line")
 

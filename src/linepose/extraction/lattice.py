@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linepose.extraction.targets import HOLE_RADIUS_M, Targets
+from linepose.pattern import COLUMN_SPACING_M, N_COLUMNS, N_ROWS, ROW_SPACING_M
 from linepose.rotations import Floats
-from linepose.simulate.board import COLUMN_SPACING_M, N_COLUMNS, N_ROWS, ROW_SPACING_M
 
 _SHORTEST: Final = 0.70 * COLUMN_SPACING_M / HOLE_RADIUS_M  # of a step, in hole radii
 _LONGEST: Final = 1.45 * ROW_SPACING_M / HOLE_RADIUS_M

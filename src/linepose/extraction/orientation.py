@@ -13,8 +13,8 @@ from scipy import ndimage
 from linepose.extraction.board_in_scan import BoardInScan, fit_board
 from linepose.extraction.scans import Intensity
 from linepose.extraction.targets import HOLE_RADIUS_M
+from linepose.pattern import CORNER_MARK_CENTRE_M, CORNER_MARK_SIDE_M, N_COLUMNS, N_ROWS, board_points
 from linepose.rotations import Floats
-from linepose.simulate.board import CORNER_MARK_CENTRE_M, CORNER_MARK_SIDE_M, N_COLUMNS, N_ROWS, board_points
 
 BOARD_M: Final[Floats] = board_points()[:, :2]
 _BRIGHT_MARK: Final = 0.6  # of the way from the holes to the rings

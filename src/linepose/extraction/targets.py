@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from linepose.extraction.scans import Intensity
+from linepose.pattern import RING_INNER_DIAMETER_M
 from linepose.rotations import Floats
-from linepose.simulate.board import RING_INNER_DIAMETER_M
 
 HOLE_RADIUS_M: Final = RING_INNER_DIAMETER_M / 2
 _LEVELS: Final = np.geomspace(0.08, 0.7, 8)  # of the range of intensities

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from linepose.pattern import N_POINTS
 from linepose.rotations import Floats
-from linepose.simulate.board import N_POINTS
 from linepose.simulate.settings import SimulationSettings
 from linepose.simulate.trajectory import schedule
 

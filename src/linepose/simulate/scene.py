@@ -7,16 +7,17 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from linepose.simulate import board
+from linepose import pattern
 
-_HALF_X, _HALF_Y = board.SHEET_M[0] / 2, board.SHEET_M[1] / 2
-_PRINT_X, _PRINT_Y = _HALF_X - board.PRINT_MARGIN_M, _HALF_Y - board.PRINT_MARGIN_M
+_HALF_X, _HALF_Y = pattern.SHEET_M[0] / 2, pattern.SHEET_M[1] / 2
+_PRINT_X, _PRINT_Y = _HALF_X - pattern.PRINT_MARGIN_M, _HALF_Y - pattern.PRINT_MARGIN_M
 _DOT, _INNER, _OUTER = (
-    (diameter / 2) ** 2 for diameter in (board.DOT_DIAMETER_M, board.RING_INNER_DIAMETER_M, board.RING_OUTER_DIAMETER_M)
+    (diameter / 2) ** 2
+    for diameter in (pattern.DOT_DIAMETER_M, pattern.RING_INNER_DIAMETER_M, pattern.RING_OUTER_DIAMETER_M)
 )
-_DX, _DY = board.COLUMN_SPACING_M, board.ROW_SPACING_M
-_COLUMNS, _ROWS = board.N_COLUMNS, board.N_ROWS
-_MARK_X, _MARK_Y, _MARK_HALF = *board.CORNER_MARK_CENTRE_M, board.CORNER_MARK_SIDE_M / 2
+_DX, _DY = pattern.COLUMN_SPACING_M, pattern.ROW_SPACING_M
+_COLUMNS, _ROWS = pattern.N_COLUMNS, pattern.N_ROWS
+_MARK_X, _MARK_Y, _MARK_HALF = *pattern.CORNER_MARK_CENTRE_M, pattern.CORNER_MARK_SIDE_M / 2
 
 
 @numba.njit(cache=True, inline="always")

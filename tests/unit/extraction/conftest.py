@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from linepose.simulate import board
+from linepose import pattern
 
 SAMPLES = 3  # per pixel, each way
 DARK, BRIGHT, GROUND = 0.05, 0.80, 0.25
@@ -27,7 +27,7 @@ def reflectance(x, y, covered, with_mark):
     id_ = 5 * (row + 1) + np.where(row == 0, 2 - column, column + 2)
     white = (nearest < 0.005) | ((nearest > 0.0375) & (nearest < 0.060))
     if with_mark:
-        mark = board.CORNER_MARK_CENTRE_M
+        mark = pattern.CORNER_MARK_CENTRE_M
         white |= (abs(x - mark[0]) < 0.02) & (abs(y - mark[1]) < 0.02)
     white |= (abs(x) > 0.4105) | (abs(y) > 0.287)
     value = np.where(white, BRIGHT, DARK)
@@ -51,7 +51,7 @@ def draw(matrix, offset, shape=(400, 300), bend=0.0, covered=(), with_mark=True,
     value = np.where(np.isnan(value), ground, value)
     pixels = value.reshape(shape[0], SAMPLES, shape[1], SAMPLES).mean(axis=(1, 3))
     pixels = ndimage.uniform_filter(pixels, 2.0) + noise * rng.standard_normal(shape)
-    truth = board.board_points()[:, :2] @ matrix.T + offset
+    truth = pattern.board_points()[:, :2] @ matrix.T + offset
     truth[:, 0] += bend * (truth[:, 1] - offset[1]) ** 2
     return Picture((4000 * pixels).astype(np.float32), truth + 0.5)  # a filter of even size shifts by half a pixel
 

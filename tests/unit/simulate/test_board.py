@@ -1,22 +1,23 @@
 import numpy as np
 
+from linepose import pattern
 from linepose.simulate import board
 from linepose.simulate.settings import BoardSettings
 
 
 def test_ids_run_to_and_fro_at_the_published_spacings():
-    steps = np.linalg.norm(np.diff(board.board_points(), axis=0), axis=1)
+    steps = np.linalg.norm(np.diff(pattern.board_points(), axis=0), axis=1)
     expected = np.full(14, 0.1511)
     expected[[4, 9]] = 0.1669
     np.testing.assert_allclose(steps, expected, atol=1e-12)
-    np.testing.assert_allclose(board.board_points().mean(axis=0), 0, atol=1e-12)
+    np.testing.assert_allclose(pattern.board_points().mean(axis=0), 0, atol=1e-12)
 
 
 def test_corner_mark_is_on_the_print_and_clear_of_the_nearest_ring():
-    mark, half = np.abs(board.CORNER_MARK_CENTRE_M), board.CORNER_MARK_SIDE_M / 2
-    assert np.all(mark + half <= np.array(board.SHEET_M) / 2 - board.PRINT_MARGIN_M)
+    mark, half = np.abs(pattern.CORNER_MARK_CENTRE_M), pattern.CORNER_MARK_SIDE_M / 2
+    assert np.all(mark + half <= np.array(pattern.SHEET_M) / 2 - pattern.PRINT_MARGIN_M)
     nearest_corner = mark - half
-    assert np.linalg.norm(nearest_corner - np.abs(board.board_points()[0, :2])) > board.RING_OUTER_DIAMETER_M / 2
+    assert np.linalg.norm(nearest_corner - np.abs(pattern.board_points()[0, :2])) > pattern.RING_OUTER_DIAMETER_M / 2
 
 
 def test_upright_board_facing_west_has_its_rows_level():

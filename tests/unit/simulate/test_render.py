@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linepose.simulate.board import DOT_DIAMETER_M
+from linepose.pattern import DOT_DIAMETER_M
 from linepose.simulate.projection import exact_projections
 from linepose.simulate.record import true_lines
 from linepose.simulate.render import line_times_s, render
