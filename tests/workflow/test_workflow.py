@@ -127,7 +127,7 @@ def test_simulated_platforms_run_when_the_field_data_cannot_be_had(tmp_path):
         {"tiny": TINY},
     )
     (tmp_path / "config" / "datasets" / "nowhere.yaml").write_text(
-        "base_url: http://127.0.0.1:9/\nsha256: {nav_covs.csv: " + "0" * 64 + "}\n"
+        "base_url: http://127.0.0.1:9/\nsha256: {nav_covs.csv: " + "a" * 64 + "}\n"
     )
     run = project.run("--dry-run")
     assert run.returncode == 0, run.stderr
