@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
+from linepose.config.coverage import CoverageSection
 from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
 from linepose.optimise import Search
@@ -73,6 +74,7 @@ class Study(Section):
     search: SearchSection = Field(SearchSection(), description="Optimisation.")
     outliers: OutliersSection = Field(OutliersSection(), description="Outlier removal.")
     sampling: SamplingSection = Field(SamplingSection(), description="MCMC.")
+    coverage: CoverageSection = Field(CoverageSection(), description="Coverage study; not part of the main job.")
 
 
 def load_dataset(path: Path) -> DatasetSection:
