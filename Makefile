@@ -35,7 +35,7 @@ bench: $(STAMP) ## Measure speed on this machine
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
 	$(BIN)/python -m linepose.config.reference
 
-images: $(STAMP) ## Take the README's pictures from results/ladybird/figures
+images: $(STAMP) ## Take the README's pictures from results/
 	$(BIN)/python -m linepose.report.pictures
 
 lock: ## Take the newest versions that fit pyproject.toml into requirements.lock

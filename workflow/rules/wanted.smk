@@ -33,6 +33,7 @@ def drawn_from(wildcards):
         "basin_summary": experiments.basin,
         "mapping": experiments.mapping,
         "mapping_summary": experiments.mapping,
+        "detected_points": wildcards.platform in PROJECT.simulated,
     }
     return [
         f"results/{wildcards.platform}/{key}.parquet"
