@@ -1,8 +1,8 @@
 """Each usual mistake is undone and the pose fitted near the hand-measured one; the data tell which undoing fits best.
 
 What is compared is `1/2 chi^2` of the whitened residuals and of the hand measurement together, at its least: the
-paper's -log L with a Gaussian prior on the pose (its sigmas as given). A mistake that only renames what the prior
-holds apart (a flipped scan line and a camera mounted the other way round) leaves the same residuals; such ties are told.
+paper's -log L with a Gaussian prior on the pose (its sigmas as given). Two mistakes may leave the same residuals (a
+flipped scan line, and a camera mounted the other way round); such ties are told.
 """
 
 from collections.abc import Callable, Sequence
