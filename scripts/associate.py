@@ -23,7 +23,7 @@ with stage(snakemake) as log:
         points = read_table(snakemake.input[0], POINTS)
     covariances = read_covariances(folder / source.covariances, navigation.covariance_columns)
     observations = associate_covariances(points, covariances, navigation.maximum_gap_s)
-    check_determined(survey_from_table(observations), N_PARAMETERS)
+    check_determined(survey_from_table(observations), N_PARAMETERS, str(folder))
     write_table(observations, snakemake.output.observations, OBSERVATIONS)
     write_table(median_sigma_table(covariances), snakemake.output.sigma, NAVIGATION_SIGMA)
     log.info("largest gap to a covariance: %.3f s", observations["nav_gap_s"].max())

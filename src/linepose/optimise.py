@@ -44,13 +44,21 @@ def bounded(unbounded: ArrayLike, centre: ArrayLike, half_width: ArrayLike) -> F
 
 
 def optimise(likelihood: Likelihood, start: ArrayLike, search: Search | None = None) -> Optimum:
-    """The optimum that Powell's method reaches from a start pose (6,) (section 3.5).
+    """The optimum that Powell's method reaches from a start pose (6,), the ranges centred on it (section 3.5).
 
     Raises InputError for a start that is not finite.
     """
     search = search or Search()
-    centre = likelihood.start(check_pose(start, "start pose"))
-    half_width = likelihood.half_widths(search.half_width_m, search.half_width_rad)
+    first = likelihood.start(check_pose(start, "start pose"))
+    return optimise_within(
+        likelihood, first, first, likelihood.half_widths(search.half_width_m, search.half_width_rad), search
+    )
+
+
+def optimise_within(
+    likelihood: Likelihood, start: Floats, centre: Floats, half_width: Floats, search: Search
+) -> Optimum:
+    """The optimum that Powell's method reaches from parameters (P,), within `centre +- half_width` (P,) each."""
     log_likelihood = likelihood.log_likelihood
 
     def objective(unbounded: Floats) -> float:
@@ -59,7 +67,7 @@ def optimise(likelihood: Likelihood, start: ArrayLike, search: Search | None = N
 
     found = minimize(
         objective,
-        np.zeros(len(centre)),
+        np.arcsin(np.clip((start - centre) / half_width, -1, 1)),
         method="Powell",
         options={"xtol": search.x_tolerance, "ftol": search.f_tolerance},
     )

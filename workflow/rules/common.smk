@@ -54,6 +54,13 @@ def experiment(key):
     ].experiments.model_dump(mode="json")[key]
 
 
+def readable(wildcards):
+    """The check of what the platform recorded; what was simulated here needs none."""
+    if wildcards.platform in PROJECT.simulated:
+        return []
+    return f"results/logs/{wildcards.platform}/check_readable.passed"
+
+
 def platform_file(wildcards):
     """The platform's file, for messages."""
     return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"

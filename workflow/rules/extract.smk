@@ -1,6 +1,7 @@
 rule extract:
     input:
-        lambda wildcards: PROJECT.record(wildcards.platform),
+        record=lambda wildcards: PROJECT.record(wildcards.platform),
+        readable=readable,
     output:
         "results/{platform}/points.parquet",
     log:

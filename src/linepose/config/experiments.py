@@ -66,8 +66,9 @@ class BasinSection(Section):
         ["powell", "wide"],
         min_length=1,
         description="Searches to compare on the same starts. powell: on the paper's equations, where points behind the "
-        "camera count as if in front. powell_in_front: as the poses are found, such points excluded. wide: rotations "
-        "first, then least squares, then Powell.",
+        "camera count as if in front, and with rotation components within +- pi. powell_in_front: as the poses are "
+        "found, such points excluded, all ranges centred on the start. wide: rotations first, then least squares, then "
+        "Powell.",
     )
     success_threshold: PositiveFloat = Field(
         0.1, description="A success ends nearer to the optimum than this (sigmas)."
