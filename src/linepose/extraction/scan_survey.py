@@ -55,7 +55,7 @@ def refined_points(scans: Mapping[int, Path], labels: pd.DataFrame, refine: Refi
                 "correct or remove the label",
             )
         tables.append(_table(number, scan, mine["point"].to_numpy(), found))
-    return _joined(tables, len(scans))
+    return _joined(tables, scans)
 
 
 def detected_points(scans: Mapping[int, Path], refine: Refine, n_pixels: int) -> pd.DataFrame:
@@ -74,7 +74,7 @@ def detected_points(scans: Mapping[int, Path], refine: Refine, n_pixels: int) ->
             log.warning("observation %d (%s) is left out: %s", number, path.name, found.doubt)
             continue
         tables.append(_table(number, scan, found.point, np.stack([found.u_px, found.line], axis=-1)))
-    return _joined(tables, len(scans))
+    return _joined(tables, scans)
 
 
 def _read(path: Path, n_pixels: int) -> Scan:
@@ -97,12 +97,12 @@ def _table(number: int, scan: Scan, point: np.ndarray, position: Floats) -> pd.D
     )
 
 
-def _joined(tables: list[pd.DataFrame], n_scans: int) -> pd.DataFrame:
+def _joined(tables: list[pd.DataFrame], scans: Mapping[int, Path]) -> pd.DataFrame:
     tables = [table for table in tables if len(table)]
     if len(tables) < _FEWEST_OBSERVATIONS:
         raise InputError(
-            "extraction",
-            f"{len(tables)} of {n_scans} scans with known points",
+            str(next(iter(scans.values())).parent) if scans else "source.scans",
+            f"{len(tables)} of {len(scans)} scans with known points",
             f"at least {_FEWEST_OBSERVATIONS}",
             "add scans of the whole board, or label them",
         )

@@ -70,7 +70,10 @@ def read_line_times(path: Path, n_lines: int) -> NDArray[np.int64]:
     """Time stamps (n_lines,) in microseconds; raises InputError where they are too few, too many or not increasing."""
     if not path.is_file():
         raise InputError(str(path), "no such file", "the time stamp of each line", "put it beside the scan")
-    rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
+    try:
+        rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
+    except UnicodeDecodeError:
+        raise InputError(str(path), "bytes that are not text", "a time stamp a row", "restore the file") from None
     heading = int(bool(rows) and rows[0] == "time_us")
     times = np.empty(len(rows) - heading, dtype=np.int64)
     for index, cell in enumerate(rows[heading:]):
@@ -82,7 +85,7 @@ def read_line_times(path: Path, n_lines: int) -> NDArray[np.int64]:
     if len(times) != n_lines:
         remedy = "restore the file that is incomplete"
         raise InputError(str(path), f"{len(times)} time stamps", f"{n_lines}, one for each line of the scan", remedy)
-    check_microseconds(times, path)
+    check_microseconds(times, path, first_row=heading + 1)
     backwards = np.flatnonzero(np.diff(times) <= 0)
     if backwards.size:
         row = int(backwards[0]) + 1
@@ -148,11 +151,15 @@ def _open_envi(path: Path) -> SpyFile:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             image: SpyFile = envi.open(str(path.resolve()))
+    except envi.EnviDataFileNotFoundError:
+        expected = f"{path.stem}.{interleave}, .img, .dat, .raw or .bin beside it"
+        raise InputError(str(path), "no data file", expected, "put the data file there") from None
     except (SpyException, ValueError, OSError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "an ENVI header with its data file beside it", "restore both") from None
     n_values = sizes["lines"] * sizes["samples"] * sizes["bands"]
-    _check_data_size(Path(image.filename), offset + n_values * np.dtype(image.dtype).itemsize, sizes)
+    data_path = path.with_name(Path(image.filename).name)
+    _check_data_size(data_path, offset + n_values * np.dtype(image.dtype).itemsize, sizes)
     return image
 
 
