@@ -90,7 +90,11 @@ def _label(figure: Figure) -> None:
 def two_ticks(low: float, high: float) -> list[float]:
     """Two round numbers as far apart as they go, clear of the panel's ends, where the next panel's labels are."""
     margin = _TICK_MARGIN * (high - low)
-    inner = [tick for tick in MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high) if low + margin <= tick <= high - margin]
+    inner = [
+        tick
+        for tick in MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high)
+        if low + margin <= tick <= high - margin
+    ]
     return [float(tick) for tick in dict.fromkeys((inner[0], inner[-1]))] if inner else [(low + high) / 2]
 
 

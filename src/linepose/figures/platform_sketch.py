@@ -109,6 +109,7 @@ def platform_sketch_caption(samples: pd.DataFrame) -> str:
     sigma_mm = 1e3 * samples[list(POSE_COLUMNS[:3])].std().to_numpy()
     return (
         "The sampled camera positions (shaded by density) and optical axes (lines) on the platform, seen from the side "
-        f"and from the front; below, the dotted squares close up. The positions scatter by {sigma_mm[0]:.0f} mm forward, {sigma_mm[1]:.0f} mm to the right and "
-        f"{sigma_mm[2]:.0f} mm down. The outline is a sketch for orientation, not to the millimetre."
+        "and from the front; below, the dotted squares close up. The positions scatter by "
+        f"{sigma_mm[0]:.0f} mm forward, {sigma_mm[1]:.0f} mm to the right and {sigma_mm[2]:.0f} mm down. The outline "
+        "is a sketch for orientation, not to the millimetre."
     )
