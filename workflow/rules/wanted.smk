@@ -42,13 +42,13 @@ def drawn_from(wildcards):
 
 
 def reported(wildcards):
-    """Every result that the report's summaries rest on."""
+    """Every result that the report's summaries and sections rest on."""
     always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
     known = [
         file
         for platform in PLATFORMS
         for file in asked_for(platform)
-        if Path(file).stem in ("splits", "leave_one_out")
+        if Path(file).stem in ("splits", "leave_one_out", "sensitivity", "subsets")
     ]
     return known + expand(
         "results/{platform}/{name}.parquet", platform=PLATFORMS, name=always
