@@ -56,7 +56,9 @@ def check_microseconds(time_us: np.ndarray[tuple[int], np.dtype[np.int64]], path
             ),
             "write microseconds since 1970",
         )
-        raise InputError(f"{path}, row {row + first_row}, column 1", f"time {time}", "microseconds since 1970-01-01", guess)
+        raise InputError(
+            f"{path}, row {row + first_row}, column 1", f"time {time}", "microseconds since 1970-01-01", guess
+        )
 
 
 _OTHER_UNITS = (

@@ -99,7 +99,9 @@ def test_points_get_the_pose_columns():
 
 @pytest.mark.parametrize("offset", [-1, 490_001])
 def test_observation_outside_the_log_is_named(offset):
-    with pytest.raises(InputError, match=r"navigation: observation 7, point 1: found time .* within the navigation log"):
+    with pytest.raises(
+        InputError, match=r"navigation: observation 7, point 1: found time .* within the navigation log"
+    ):
         associate_poses(points(START_US, START_US + offset), log_of(table()), nearest_pose, 1.0)
 
 

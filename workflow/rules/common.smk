@@ -66,6 +66,12 @@ def platform_file(wildcards):
     return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
 
 
+def sampling(wildcards):
+    """How the platform's noise model is sampled, as a rule's parameter."""
+    noise_model = PROJECT.platforms[wildcards.platform].noise_model
+    return STUDY.sampling_of(noise_model).model_dump(mode="json")
+
+
 def section(key):
     """What config.yaml says under this key, as a rule's parameter."""
     return getattr(STUDY, key).model_dump(mode="json")

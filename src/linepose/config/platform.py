@@ -24,6 +24,7 @@ from linepose.config.experiments import ExperimentsSection
 from linepose.config.outline import OutlineSection
 from linepose.config.schema import Section, validated
 from linepose.errors import InputError
+from linepose.likelihood.names import NoiseModelName
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
 from linepose.rotations import Floats
 from linepose.simulate.settings import SimulationSettings, settings_from_dict
@@ -184,9 +185,16 @@ class Platform(Section):
     simulation: Simulation | None = Field(
         None, description="A simulated survey with a known truth: keys and units in linepose.simulate.settings."
     )
-    noise_model: Literal["published"] = Field("published", description="The likelihood's model of the noise.")
+    noise_model: NoiseModelName = Field(
+        "published",
+        description="The likelihood's model of the noise. published: every line of a view errs independently, as "
+        "reported (the paper). shared: the navigation error is common to a view, its level inferred (recommended). "
+        "robust: shared, with heavy tails for bad views and points.",
+    )
     published: Literal["ladybird", "ladybird_attitude", "ladybird_simulated", "shrimp_simulated"] | None = Field(
-        None, description="The published numbers that the results are held against, if any."
+        None,
+        description="The published numbers that the results are held against, if any; the noise model must be the "
+        "published one for that.",
     )
 
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
