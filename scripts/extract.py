@@ -7,9 +7,10 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import LabelledViewsSection, Platform
     from linepose.extraction.labelled_views import read_labelled_views, select_views
-    from linepose.extraction.labels import read_labels
     from linepose.extraction.refine import METHODS
     from linepose.extraction.scan_survey import detected_points, refined_points, select_scans
+    from linepose.formats.labels import read_point_labels
+    from linepose.formats.line_times import line_times_of
     from linepose.result_schemas import POINTS, SCAN_POINTS
     from linepose.storage import write_table
 
@@ -21,10 +22,11 @@ with stage(snakemake) as log:
         points, schema = read_labelled_views(views, n_pixels), POINTS
     else:
         scans, refine = select_scans(folder, source.scans, source.left_out), METHODS[source.refinement]
-        schema = SCAN_POINTS
+        line_times, schema = line_times_of(source), SCAN_POINTS
         if source.points == "detection":
-            points = detected_points(scans, refine, n_pixels)
+            points = detected_points(scans, refine, n_pixels, line_times)
         else:
-            points = refined_points(scans, read_labels(folder / source.labels, list(scans)), refine, n_pixels)
+            labels = read_point_labels(folder, source.labels, scans, n_pixels)
+            points = refined_points(scans, labels, refine, n_pixels, line_times)
     write_table(points, snakemake.output[0], schema)
     log.info("%d points in %d views of %s", len(points), points["observation"].nunique(), folder)

@@ -14,6 +14,7 @@ rule associate:
         code=[
             source_digest("linepose.navigation"),
             source_digest("linepose.navigation_log"),
+            source_digest("linepose.formats.navigation"),
         ],
     script:
         "../../scripts/associate.py"

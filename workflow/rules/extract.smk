@@ -14,7 +14,8 @@ rule extract:
         code=[
             source_digest("linepose.extraction.labelled_views"),
             source_digest("linepose.extraction.scan_survey"),
-            source_digest("linepose.extraction.labels"),
+            source_digest("linepose.formats.labels"),
+            source_digest("linepose.formats.line_times"),
         ],
     script:
         "../../scripts/extract.py"
