@@ -40,8 +40,9 @@ def observations_from_arrays(
         largest = float(np.abs(euler).max())
         raise InputError("euler_rad", f"an angle of {largest:g}", "radians", "convert degrees with numpy.radians")
     matrices = np.asarray(covariance, dtype=float)
-    matrices = _shaped("covariance", np.broadcast_to(matrices, (count, 6, 6)) if matrices.ndim == 2 else matrices,
-                       (count, 6, 6))
+    matrices = _shaped(
+        "covariance", np.broadcast_to(matrices, (count, 6, 6)) if matrices.ndim == 2 else matrices, (count, 6, 6)
+    )
     _check_covariances(matrices)
     columns: dict[str, Floats | np.ndarray] = {
         "observation": _whole("observation", observation, count),

@@ -9,13 +9,18 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
-from linepose.camera import Camera
 from linepose.calibrated import Calibration, HandMeasured
+from linepose.camera import Camera
 from linepose.diagnostics import diagnose_samples
 from linepose.errors import InputError
 from linepose.likelihood.models import NOISE_MODELS, likelihood_of
-from linepose.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS, check_determined
-from linepose.observations import survey_from_table
+from linepose.observations import (
+    COVARIANCE_COLUMNS,
+    EULER_COLUMNS,
+    POSITION_COLUMNS,
+    check_determined,
+    survey_from_table,
+)
 from linepose.optimise import Search
 from linepose.outliers import outlier_table, reject_outliers, stage_observations
 from linepose.pose import N_PARAMETERS
@@ -103,6 +108,6 @@ def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.Da
         )
     if observations.empty:
         raise InputError("observations", "no row", "one row a point seen", "add observations")
-    optional = {name: 0 for name in ("time_us",) if name not in observations.columns}
-    optional |= {name: 0.0 for name in ("nav_gap_s",) if name not in observations.columns}
-    return observations.assign(**optional) if optional else observations
+    if "time_us" not in observations.columns:
+        observations = observations.assign(time_us=np.zeros(len(observations), dtype=np.int64))
+    return observations if "nav_gap_s" in observations.columns else observations.assign(nav_gap_s=0.0)

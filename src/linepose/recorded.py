@@ -9,8 +9,8 @@ from linepose.extraction.labelled_views import read_labelled_views, select_views
 from linepose.extraction.labels import read_labels
 from linepose.extraction.refine import METHODS
 from linepose.extraction.scan_survey import detected_points, refined_points, select_scans
-from linepose.navigation import associate_covariances, read_covariances
-from linepose.navigation_log import POSE_AT, associate_poses, read_navigation_log
+from linepose.navigation import NavigationCovariances, associate_covariances, read_covariances
+from linepose.navigation_log import POSE_AT, NavigationLog, associate_poses, read_navigation_log
 from linepose.observations import check_determined, survey_from_table
 from linepose.pose import N_PARAMETERS
 
@@ -34,13 +34,23 @@ def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> p
 
     Columns as in `result_schemas.OBSERVATIONS`. Raises InputError.
     """
-    navigation, source = platform.navigation, platform.source
-    if isinstance(source, ScansSection):
-        log = read_navigation_log(folder / source.navigation)
+    navigation = platform.navigation
+    if isinstance(platform.source, ScansSection):
+        log = read_log(platform, folder)
         points = points.drop(columns="line", errors="ignore")
         points = associate_poses(points, log, POSE_AT[navigation.association], navigation.maximum_pose_gap_s)
-    covariances = read_covariances(folder / source.covariances, navigation.covariance_columns)
-    return associate_covariances(points, covariances, navigation.maximum_gap_s)
+    return associate_covariances(points, read_reported(platform, folder), navigation.maximum_gap_s)
+
+
+def read_log(platform: Platform, folder: Path) -> NavigationLog:
+    """The raw navigation log of a platform with scans; raises InputError."""
+    assert isinstance(platform.source, ScansSection)
+    return read_navigation_log(folder / platform.source.navigation)
+
+
+def read_reported(platform: Platform, folder: Path) -> NavigationCovariances:
+    """The navigation covariances of a platform; raises InputError."""
+    return read_covariances(folder / platform.source.covariances, platform.navigation.covariance_columns)
 
 
 def read_observations(platform: Platform, folder: Path) -> pd.DataFrame:
