@@ -23,7 +23,7 @@ from linepose.camera import Camera, CameraSigmas
 from linepose.config.experiments import ExperimentsSection
 from linepose.config.navigation_formats import Navigation
 from linepose.config.outline import OutlineSection
-from linepose.config.schema import Section, validated
+from linepose.config.schema import Section, faults_of, validated
 from linepose.errors import InputError
 from linepose.likelihood.names import NoiseModelName
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
@@ -266,6 +266,15 @@ def load_platform(folder: Path, name: str) -> Platform:
     Raises InputError for a file that is missing, is not YAML, or says something that no platform has.
     """
     return validated(Platform, _merged_values(folder, name, []), str(folder / f"{name}.yaml"))
+
+
+def platform_faults(folder: Path, name: str) -> list[InputError]:
+    """Every fault of config/platforms/NAME.yaml; none where `load_platform` would read it."""
+    try:
+        values = _merged_values(folder, name, [])
+    except InputError as error:
+        return [error]
+    return faults_of(Platform, values, str(folder / f"{name}.yaml"))
 
 
 def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:

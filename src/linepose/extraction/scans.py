@@ -72,6 +72,25 @@ def read_intensity(path: Path) -> Intensity:
     return reader(path)
 
 
+def scan_size(path: Path) -> tuple[int, int]:
+    """Lines and pixels of a scan, from its header alone: no intensity is read; raises InputError as `read_scan`."""
+    if not path.is_file():
+        raise InputError(str(path), "no such file", "a scan", "restore it, or correct source.scans")
+    if path.suffix.lower() == ".hdr":
+        n_lines, n_samples, _ = _open_envi(path).shape
+        return int(n_lines), int(n_samples)
+    if path.suffix.lower() not in _READERS:
+        raise InputError(str(path), f"file type {path.suffix!r}", f"one of {', '.join(_READERS)}", "convert the scan")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(path) as image:
+                return image.height, image.width
+    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, SyntaxError, ValueError) as error:
+        found = " ".join(str(error).split())
+        raise InputError(str(path), found, "a whole PNG or TIFF file", "restore the scan") from None
+
+
 def times_path(path: Path) -> Path:
     """Where the time stamps of a scan file stand."""
     return path.with_name(f"{path.stem}-times.csv")
