@@ -19,7 +19,8 @@ rule sensitivity:
         platform=settings,
         others=lambda wildcards: {
             key: PROJECT.platforms[key].model_dump(
-                mode="json", exclude={"description", "published", "experiments"}
+                mode="json",
+                exclude={"description", "published", "experiments", "map_frame"},
             )
             for key in others(wildcards)
         },
