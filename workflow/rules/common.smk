@@ -43,7 +43,7 @@ def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
     return PROJECT.platforms[wildcards.platform].model_dump(
         mode="json",
-        exclude={"description", "published", "experiments", "outline"},
+        exclude={"description", "published", "experiments", "outline", "map_frame"},
     )
 
 

@@ -99,6 +99,26 @@ class NavigationSection(Section):
         return columns
 
 
+class MapFrameSection(Section):
+    """Where on the Earth the survey's north, east and down are; for exports of mapped points only."""
+
+    crs: str | None = Field(
+        None,
+        description="Projected reference system, in metres, whose northing and easting the positions are, such as "
+        "EPSG:32756 (UTM zone 56 south, WGS84).",
+    )
+    origin: Triple | None = Field(
+        None,
+        description="Or, of local positions, their origin: latitude, longitude (deg), ellipsoidal height (m), WGS84.",
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> "MapFrameSection":
+        if (self.crs is None) == (self.origin is None):
+            raise ValueError("either crs or origin")
+        return self
+
+
 class LabelledViewsSection(Section):
     """Labelled points that already carry the body pose: CSV files, one a view of the pattern."""
 
@@ -231,6 +251,7 @@ class Platform(Section):
         "published one for that.",
     )
 
+    map_frame: MapFrameSection | None = Field(None, description="Where the survey lies on the Earth.")
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
     experiments: ExperimentsSection = Field(
         ExperimentsSection(), description="Experiments on the accepted observations."
