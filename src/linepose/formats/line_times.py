@@ -14,7 +14,7 @@ from linepose.errors import InputError
 from linepose.extraction.scan_survey import select_scans
 from linepose.extraction.scans import LineTimes, check_line_times, read_times, times_path
 from linepose.formats import gps_time
-from linepose.formats.navigation.resonon import location_times
+from linepose.formats.location_file import location_times
 
 Stamps = NDArray[np.int64]
 
