@@ -35,8 +35,9 @@ bench: $(STAMP) ## Measure speed on this machine
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
 	$(BIN)/python -m linepose.config.reference
 
-images: $(STAMP) ## Take the README's pictures from results/ladybird/figures
+images: $(STAMP) ## Make the pictures of README and docs, from results/ladybird/figures
 	$(BIN)/python -m linepose.report.pictures
+	$(BIN)/python -m linepose.figures.conventions
 
 lock: ## Take the newest versions that fit pyproject.toml into requirements.lock
 	rm -rf .venv-lock

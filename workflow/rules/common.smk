@@ -43,7 +43,7 @@ def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
     return PROJECT.platforms[wildcards.platform].model_dump(
         mode="json",
-        exclude={"description", "published", "experiments", "outline"},
+        exclude={"description", "published", "experiments", "outline", "map_frame"},
     )
 
 
@@ -64,6 +64,12 @@ def readable(wildcards):
 def platform_file(wildcards):
     """The platform's file, for messages."""
     return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
+
+
+def sampling(wildcards):
+    """How the platform's noise model is sampled, as a rule's parameter."""
+    noise_model = PROJECT.platforms[wildcards.platform].noise_model
+    return STUDY.sampling_of(noise_model).model_dump(mode="json")
 
 
 def section(key):

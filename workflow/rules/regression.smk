@@ -4,6 +4,7 @@ REGRESSED = {
     key: PROJECT.platforms[key].published
     for key in PLATFORMS
     if PROJECT.platforms[key].published
+    and PROJECT.platforms[key].noise_model == "published"
 }
 REGRESSED_ON_TRUTH = [key for key in REGRESSED if key in PROJECT.simulated]
 

@@ -103,6 +103,18 @@ class SensitivitySection(Section):
     )
 
 
+class NoiseModelsSection(Section):
+    """The pose under each noise model, side by side, and whether disjoint observations agree under each."""
+
+    platforms: list[str] = Field(
+        [],
+        description="Platform files with other views of the same pattern by the same camera, such as the forward "
+        "passes; they are run as far as the outlier removal.",
+    )
+    n_splits: NonNegativeInt = Field(200, description="Random splits of each platform's accepted observations.")
+    batch_size: PositiveInt = Field(20, description="Splits between two savings; no result depends on it.")
+
+
 class ExperimentsSection(Section):
     """Which experiments are run on the accepted observations; null leaves one out."""
 
@@ -111,3 +123,9 @@ class ExperimentsSection(Section):
     basin: BasinSection | None = Field(BasinSection(), description="Basin of attraction.")
     mapping: MappingSection | None = Field(MappingSection(), description="Mapping.")
     sensitivity: SensitivitySection | None = Field(SensitivitySection(), description="Other choices.")
+    noise_models: NoiseModelsSection | None = Field(None, description="All noise models side by side.")
+
+    def other_platforms(self) -> list[str]:
+        """Platform files that an experiment compares with."""
+        named = [name for one in (self.sensitivity, self.noise_models) if one for name in one.platforms]
+        return list(dict.fromkeys(named))

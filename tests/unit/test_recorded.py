@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from linepose.errors import InputError
-from linepose.readable import check_readable
+from linepose.recorded import check_readable
 
 
 @pytest.fixture
