@@ -30,7 +30,7 @@ check: $(STAMP) ## Style, types and the workflow's own lint
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 
 bench: $(STAMP) ## Measure speed on this machine
-	for benchmark in benchmarks/*.py; do $(BIN)/python $$benchmark || exit 1; echo; done
+	@for name in machine likelihood pipeline experiments workflow shared; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
 
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
 	$(BIN)/python -m linepose.config.reference
