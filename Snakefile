@@ -22,6 +22,7 @@ include: "workflow/rules/check_data.smk"
 include: "workflow/rules/check_readable.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/extract.smk"
+include: "workflow/rules/measure_extraction.smk"
 include: "workflow/rules/associate.smk"
 include: "workflow/rules/reject_outliers.smk"
 include: "workflow/rules/optimise.smk"
@@ -55,6 +56,7 @@ rule all:
         rules.experiments.input,
         rules.published_tables.output if COMPARED else [],
         expand("results/{platform}/truth_error.parquet", platform=PROJECT.simulated),
+        expand("results/{platform}/detection.parquet", platform=PROJECT.simulated),
         "results/regression.parquet",
         "results/report.html",
         "results/logs/regression.passed",
