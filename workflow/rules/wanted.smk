@@ -86,3 +86,10 @@ def reported(wildcards):
     return known + expand(
         "results/{platform}/{name}.parquet", platform=PLATFORMS, name=always
     )
+
+
+def figure_labels(wildcards):
+    """A figure's title and its number in the paper, for Snakemake's report."""
+    index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
+    entry = index.set_index("figure").loc[wildcards.figure]
+    return {"figure": entry["title"], "paper": entry["paper_figure"] or "beyond it"}
