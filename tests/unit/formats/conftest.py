@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from linepose.config.platform import load_platform
 from linepose.simulate import record
 
+from ..extraction.conftest import draw
 from .drive import drive_of
 
 ROOT = Path(__file__).parents[3]
@@ -52,3 +53,8 @@ def samples():
 @pytest.fixture(scope="session")
 def random_rotation():
     return Rotation.random(40, random_state=np.random.default_rng(4))
+
+
+@pytest.fixture(scope="session")
+def drawn():
+    return draw

@@ -5,7 +5,15 @@ import zlib
 
 import numpy as np
 
-IDS = {"INSPVA": 507, "INSPVAS": 508, "INSPVAX": 1465, "INSSTDEV": 2051, "INSSTDEVS": 2052, "INSCOV": 264, "INSCOVS": 320}
+IDS = {
+    "INSPVA": 507,
+    "INSPVAS": 508,
+    "INSPVAX": 1465,
+    "INSSTDEV": 2051,
+    "INSSTDEVS": 2052,
+    "INSCOV": 264,
+    "INSCOVS": 320,
+}
 DEFINITIONS = {"INSPVA": 0x18BC, "INSPVAX": 0x471D, "INSSTDEV": 0x2396, "INSCOV": 0xF78A}  # as receivers send them
 GOOD = 3
 STATUS_NAMES = {1: "INS_ALIGNING", 3: "INS_SOLUTION_GOOD"}
@@ -19,12 +27,9 @@ def crc(data):
 
 def binary(name, week, second, payload):
     if name.endswith("S"):
-        head = struct.pack("<3sBHHI", b"\xaaD\x13", len(payload), IDS[name], week, round(second * 1000))
-    else:
-        head = struct.pack(
-            "<3sBHBBHHBBHIIHH",
-            b"\xaaD\x12", 28, IDS[name], 0, 32, len(payload), 0, 100, 180, week, round(second * 1000), 0, DEFINITIONS[name], 0,
-        )  # fmt: skip
+        first = (b"\xaaD\x12", 28, IDS[name], 0, 32, len(payload), 0, 100, 180)
+        last = (week, round(second * 1000), 0, DEFINITIONS[name], 0)
+        head = struct.pack("<3sBHBBHHBBHIIHH", *first, *last)
     return head + payload + struct.pack("<I", crc(head + payload))
 
 

@@ -31,9 +31,7 @@ def test_tangent_plane_is_that_of_the_ellipsoid(around, origin):
     np.testing.assert_allclose(position, expected, atol=2e-8)
     from_there = np.swapaxes(geodesy.axes(np.array(origin))[None], -1, -2) @ geodesy.axes(geodetic)
     np.testing.assert_allclose(turn, from_there, atol=1e-14)
-    np.testing.assert_allclose(
-        position / [1, 1, 1], expected, atol=2e-8
-    )  # distances are true: no scale
+    np.testing.assert_allclose(position / [1, 1, 1], expected, atol=2e-8)  # distances are true: no scale
 
 
 @pytest.mark.parametrize("origin", ORIGINS)
@@ -67,7 +65,9 @@ def test_grid_north_is_turned_by_the_convergence():
     expected = np.arctan(np.tan(np.deg2rad(150.3 - 153.0)) * np.sin(np.deg2rad(-33.9)))
     assert convergence == pytest.approx(expected, abs=2e-5)
     assert rotations.euler_from_matrix(turn[0])[2] == pytest.approx(-convergence, abs=1e-6)
-    assert np.hypot(*(last - first)[:2]) / 10.0 == pytest.approx(0.9996 * (1 + np.deg2rad(2.7) ** 2 * 0.69 / 2), abs=1e-5)
+    assert np.hypot(*(last - first)[:2]) / 10.0 == pytest.approx(
+        0.9996 * (1 + np.deg2rad(2.7) ** 2 * 0.69 / 2), abs=1e-5
+    )
 
 
 @pytest.mark.parametrize("crs", ["EPSG:4326", "EPSG:999999", "utm"])

@@ -35,8 +35,8 @@ def write_location(path, drive, use=5):
     euler, place = drive.true_euler, drive.geodetic
     rows = zip(drive.gps_us, euler, place, strict=True)
     lines = [
-        f"{time / 1e6:.6f} {-roll:.15g} {pitch:.15g} {yaw:.15g} {longitude:.15g} {latitude:.15g} {height:.9f} 0 0 {use} 12"
-        for time, (roll, pitch, yaw), (latitude, longitude, height) in rows
+        f"{time / 1e6:.6f} {-roll:.15g} {pitch:.15g} {yaw:.15g} {place[1]:.15g} {place[0]:.15g} {place[2]:.9f} 0 0 {use} 12"
+        for time, (roll, pitch, yaw), place in rows
     ]
     path.write_text("\n".join(lines) + "\n")
 
@@ -46,9 +46,7 @@ def geodetic_table(drive):
     sigma = np.sqrt(np.diagonal(drive.covariance, axis1=1, axis2=2))
     names = ["lat", "lon", "h", "roll", "pitch", "heading", "sn", "se", "sd", "sr", "sp", "sh"]
     degrees = np.rad2deg(np.hstack([drive.true_euler, sigma[:, 3:]]))
-    table = pd.DataFrame(
-        np.hstack([drive.geodetic, degrees[:, :3], sigma[:, :3], degrees[:, 3:]]), columns=names
-    )
+    table = pd.DataFrame(np.hstack([drive.geodetic, degrees[:, :3], sigma[:, :3], degrees[:, 3:]]), columns=names)
     return table.assign(t=drive.time_us / 1e6)
 
 
@@ -99,7 +97,11 @@ class Bag:
         return self.store.types[name]
 
     def header(self, time_us):
-        values = {"stamp": self.type("builtin_interfaces/msg/Time")(int(time_us // 1_000_000), int(time_us % 1_000_000) * 1000)}
+        values = {
+            "stamp": self.type("builtin_interfaces/msg/Time")(
+                int(time_us // 1_000_000), int(time_us % 1_000_000) * 1000
+            )
+        }
         values |= {"seq": 0} if self.ros == 1 else {}
         return self.type("std_msgs/msg/Header")(frame_id="map", **values)
 
@@ -137,5 +139,7 @@ class Bag:
         zero = self.type("geometry_msgs/msg/Vector3")(0.0, 0.0, 0.0)
         turn = self.type("geometry_msgs/msg/Quaternion")(*(float(one) for one in quaternion))
         covariance = np.asarray(covariance, dtype=float).ravel()
-        message = self.type("sensor_msgs/msg/Imu")(self.header(time_us), turn, covariance, zero, np.zeros(9), zero, np.zeros(9))
+        message = self.type("sensor_msgs/msg/Imu")(
+            self.header(time_us), turn, covariance, zero, np.zeros(9), zero, np.zeros(9)
+        )
         self.write(topic, "sensor_msgs/msg/Imu", time_us, message)

@@ -37,7 +37,9 @@ def assert_covariances(record, drive, relative, every=1):
     np.testing.assert_array_equal(record.covariances.time_us, drive.time_us[::every])
     sigma = np.sqrt(np.diagonal(drive.covariance[::every], axis1=1, axis2=2))
     unit = sigma[:, :, None] * sigma[:, None, :]
-    np.testing.assert_allclose(record.covariances.covariance / unit, drive.covariance[::every] / unit, atol=2 * relative)
+    np.testing.assert_allclose(
+        record.covariances.covariance / unit, drive.covariance[::every] / unit, atol=2 * relative
+    )
 
 
 def rows(drive, message, every=1):

@@ -21,7 +21,7 @@ def section(file, **keys):
 
 
 def test_novatel_angles_are_ours():
-    """NovAtel: x right, y forward, z up in east, north, up; azimuth about down, pitch about right, roll about forward."""
+    """NovAtel: x right, y forward, z up; azimuth about down, then pitch about right, then roll about forward."""
     roll, pitch, azimuth = np.deg2rad([4.0, -7.0, 250.0])
     enu_rfu = (
         Rotation.from_euler("z", -azimuth) * Rotation.from_euler("x", pitch) * Rotation.from_euler("y", roll)
@@ -65,11 +65,18 @@ def test_real_log_says_what_the_vendors_driver_made_of_it(samples):
     stdev = [message for topic, message in messages if topic.endswith("insstdev")]
     sigma = np.sqrt(np.diagonal(record.covariances.covariance, axis1=1, axis2=2))
     theirs = [
-        (m.latitude_stdev, m.longitude_stdev, m.height_stdev, *np.deg2rad([m.roll_stdev, m.pitch_stdev, m.azimuth_stdev]))
+        (
+            m.latitude_stdev,
+            m.longitude_stdev,
+            m.height_stdev,
+            *np.deg2rad([m.roll_stdev, m.pitch_stdev, m.azimuth_stdev]),
+        )
         for m in stdev
     ]
     np.testing.assert_allclose(sigma, theirs, rtol=1e-5)  # azimuth 200 times less sure than roll
-    week_ms = np.array([(m.nov_header.gps_week_number, m.nov_header.gps_week_milliseconds) for m in stdev], dtype=np.int64)
+    week_ms = np.array(
+        [(m.nov_header.gps_week_number, m.nov_header.gps_week_milliseconds) for m in stdev], dtype=np.int64
+    )
     gps_us = (week_ms[:, 0] * 604_800_000 + week_ms[:, 1]) * 1000
     np.testing.assert_array_equal(record.covariances.time_us, gps_us + (315_964_800 - 18) * 1_000_000)
 
