@@ -189,6 +189,7 @@ class ScansSection(Section):
         """Every file that is read, of a data set in this folder."""
         scans = list(folder.glob(self.scans))
         beside = {path for scan in scans for path in scan.parent.glob(f"{glob.escape(scan.stem)}[.-]*")}
+        beside |= {scan.with_suffix("") for scan in scans}  # run.bil of run.bil.hdr
         if self.time_stamps == "resonon":
             beside |= {path for scan in scans for suffix in ("*.times", "*.lcf") for path in scan.parent.glob(suffix)}
         elif self.time_stamps == "headwall":

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from linepose.config.navigation_formats import NavigationFormat, ResononSection, TimeScale
-from linepose.formats.location_file import location_rows, unix_times
+from linepose.formats.location_files import location_rows, location_unix_us
 from linepose.formats.navigation.record import NavigationRecord, Poses, geodetic_record
 
 _USE_COLUMN: Final = 9
@@ -28,4 +28,4 @@ def _poses(path: Path, time_scale: TimeScale) -> Poses:
     if rows.shape[1] > _USE_COLUMN:
         rows = rows[rows[:, _USE_COLUMN] != 0]
     euler = rows[:, 1:4] * [-1.0, 1.0, 1.0]
-    return Poses(unix_times(rows[:, 0], time_scale), rows[:, [5, 4, 6]], euler, str(path))
+    return Poses(location_unix_us(rows[:, 0], time_scale), rows[:, [5, 4, 6]], euler, str(path))

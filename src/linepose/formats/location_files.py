@@ -1,4 +1,4 @@
-"""Location files (.lcf) of Resonon's airborne systems: rows of numbers apart by spaces, the time (s) first."""
+"""Resonon's location files (.lcf): rows of numbers, read alike for poses and for the time of a scan's first line."""
 
 from pathlib import Path
 from typing import Final
@@ -14,19 +14,14 @@ from linepose.rotations import Floats
 _FEWEST_COLUMNS: Final = 7
 
 
-def location_times(path: Path, time_scale: TimeScale) -> NDArray[np.int64]:
-    """Unix times (us) of the rows of a location file; raises InputError naming a row that is none."""
-    return unix_times(location_rows(path)[:, 0], time_scale)
-
-
-def unix_times(time_s: Floats, time_scale: TimeScale) -> NDArray[np.int64]:
-    """Unix times (us) of a location file's first column (K,)."""
+def location_unix_us(time_s: Floats, time_scale: TimeScale) -> NDArray[np.int64]:
+    """Unix times (us) of the first column."""
     time_us = gps_time.microseconds(time_s, "s")
     return gps_time.unix_from_gps(time_us) if time_scale == "gps" else time_us
 
 
 def location_rows(path: Path) -> Floats:
-    """The numbers of a location file (K, C); raises InputError naming a row that is none."""
+    """The numbers of a location file (K, C); raises InputError naming the row that has others."""
     rows: list[list[float]] = []
     for number, line in enumerate(_lines(path), start=1):
         try:
