@@ -4,6 +4,8 @@ def asked_for(platform):
     repeatability = experiments.repeatability
     asked = {
         "uncertainty": True,
+        "prior": True,
+        "clock_offset": experiments.clock_offset,
         "subsets": experiments.subsets,
         "repeatability": repeatability and repeatability.first,
         "splits": repeatability and repeatability.n_splits,
@@ -48,7 +50,7 @@ def reported(wildcards):
         file
         for platform in PLATFORMS
         for file in asked_for(platform)
-        if Path(file).stem in ("splits", "leave_one_out")
+        if Path(file).stem in ("splits", "leave_one_out", "prior", "clock_offset")
     ]
     return known + expand(
         "results/{platform}/{name}.parquet", platform=PLATFORMS, name=always

@@ -92,6 +92,12 @@ class MappingSection(Section):
     perturbation_deg: PositiveFloat = Field(1.0, description="Turn about each body axis of the perturbed pose (deg).")
 
 
+class ClockOffsetSection(Section):
+    """The camera's clock against the navigation's, one parameter beside the pose; needs a raw navigation log."""
+
+    maximum_s: PositiveFloat = Field(0.1, description="The clocks differ by no more than this (s).")
+
+
 class SensitivitySection(Section):
     """The pose under other choices."""
 
@@ -110,3 +116,6 @@ class ExperimentsSection(Section):
     basin: BasinSection | None = Field(BasinSection(), description="Basin of attraction.")
     mapping: MappingSection | None = Field(MappingSection(), description="Mapping.")
     sensitivity: SensitivitySection | None = Field(SensitivitySection(), description="Other choices.")
+    clock_offset: ClockOffsetSection | None = Field(
+        None, description="Clock offset, of platforms with scans and a raw navigation log only."
+    )
