@@ -40,6 +40,8 @@ include: "workflow/rules/mapping.smk"
 include: "workflow/rules/sensitivity.smk"
 include: "workflow/rules/noise_models.smk"
 include: "workflow/rules/consistency.smk"
+include: "workflow/rules/prior.smk"
+include: "workflow/rules/clock_offset.smk"
 include: "workflow/rules/experiments.smk"
 include: "workflow/rules/truth_error.smk"
 include: "workflow/rules/regression.smk"
@@ -51,12 +53,12 @@ include: "workflow/rules/report.smk"
 rule all:
     default_target: True
     input:
-        expand("results/{platform}/pose.parquet", platform=PLATFORMS),
-        expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
+        expand("results/{key}/{of}.parquet", key=PLATFORMS, of=["pose", "diagnostics"]),
+        expand(
+            "results/{key}/{of}.parquet",
+            key=PROJECT.simulated,
+            of=["truth_error", "detection"],
+        ),
         rules.experiments.input,
-        rules.published_tables.output if COMPARED else [],
-        expand("results/{platform}/truth_error.parquet", platform=PROJECT.simulated),
-        expand("results/{platform}/detection.parquet", platform=PROJECT.simulated),
-        "results/regression.parquet",
         "results/report.html",
         "results/logs/regression.passed",

@@ -4,6 +4,8 @@ def asked_for(platform):
     repeatability = experiments.repeatability
     asked = {
         "uncertainty": True,
+        "prior": True,
+        "clock_offset": experiments.clock_offset,
         "subsets": experiments.subsets,
         "repeatability": repeatability and repeatability.first,
         "splits": repeatability and repeatability.n_splits,
@@ -81,6 +83,8 @@ def reported(wildcards):
             "subsets",
             "noise_models",
             "consistency_summary",
+            "prior",
+            "clock_offset",
         )
     ]
     return known + expand(
