@@ -27,6 +27,8 @@ def crc(data):
 
 def binary(name, week, second, payload):
     if name.endswith("S"):
+        head = struct.pack("<3sBHHI", b"\xaaD\x13", len(payload), IDS[name], week, round(second * 1000))
+    else:
         first = (b"\xaaD\x12", 28, IDS[name], 0, 32, len(payload), 0, 100, 180)
         last = (week, round(second * 1000), 0, DEFINITIONS[name], 0)
         head = struct.pack("<3sBHBBHHBBHIIHH", *first, *last)

@@ -34,8 +34,9 @@ def write_location(path, drive, use=5):
     """Resonon's location file: GPS seconds, roll positive with the right wing up."""
     euler, place = drive.true_euler, drive.geodetic
     rows = zip(drive.gps_us, euler, place, strict=True)
+    rest = f"0 0 {use} 12"
     lines = [
-        f"{time / 1e6:.6f} {-roll:.15g} {pitch:.15g} {yaw:.15g} {place[1]:.15g} {place[0]:.15g} {place[2]:.9f} 0 0 {use} 12"
+        f"{time / 1e6:.6f} {-roll:.15g} {pitch:.15g} {yaw:.15g} {place[1]:.15g} {place[0]:.15g} {place[2]:.9f} {rest}"
         for time, (roll, pitch, yaw), place in rows
     ]
     path.write_text("\n".join(lines) + "\n")
