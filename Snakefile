@@ -53,12 +53,6 @@ include: "workflow/rules/report.smk"
 rule all:
     default_target: True
     input:
-        expand("results/{key}/{of}.parquet", key=PLATFORMS, of=["pose", "diagnostics"]),
-        expand(
-            "results/{key}/{of}.parquet",
-            key=PROJECT.simulated,
-            of=["truth_error", "detection"],
-        ),
-        rules.experiments.input,
+        [file for platform in PLATFORMS for file in results_of(platform)],
         "results/report.html",
         "results/logs/regression.passed",

@@ -21,6 +21,17 @@ def asked_for(platform):
     ]
 
 
+def results_of(platform):
+    """Every result of a platform that people read."""
+    always = ["pose", "diagnostics"]
+    against_truth = (
+        ["truth_error", "detection"] if platform in PROJECT.simulated else []
+    )
+    return asked_for(platform) + [
+        f"results/{platform}/{key}.parquet" for key in always + against_truth
+    ]
+
+
 def others(key):
     """Platforms that the experiment of this key compares with."""
     return lambda wildcards: getattr(
