@@ -185,3 +185,15 @@ def test_simulated_platforms_run_when_the_field_data_cannot_be_had(tmp_path):
     told = "data set ladybird: not in data and not to be downloaded; only the other platforms run: tiny"
     assert len(lines_with(told, run.stderr + run.stdout)) == 1, run.stderr
     assert "results/ladybird/" not in run.stdout + run.stderr
+
+
+def test_snakemakes_own_report_has_every_figure_with_title_and_caption(finished, tmp_path):
+    run = finished.run("--report", str(tmp_path / "report.html"))
+    assert run.returncode == 0, run.stderr
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    drawn = pd.read_parquet(finished.folder / "results" / "tiny" / "figures" / "index.parquet").query("left_out == ''")
+    assert len(drawn) > 10
+    for title in drawn["title"]:
+        assert f'"labels": {{"figure": "{title}"' in page
+    assert page.count("platform <tt") == len(drawn)  # the end of each figure's caption
+    assert '{"result": "summary of all platforms"}' in page

@@ -4,6 +4,7 @@ REGRESSED = {
     key: PROJECT.platforms[key].published
     for key in PLATFORMS
     if PROJECT.platforms[key].published
+    and PROJECT.platforms[key].noise_model == "published"
 }
 
 # Those with a known truth, and the sigmas that their points' extraction is held to.

@@ -13,7 +13,7 @@ from linepose.errors import InputError
 from linepose.extraction.detect import Detection, detect
 from linepose.extraction.labels import check_within
 from linepose.extraction.refine import Refine, refine_points
-from linepose.extraction.scans import Scan, read_scan
+from linepose.extraction.scans import LineTimes, Scan, read_scan
 from linepose.rotations import Floats
 
 _FEWEST_OBSERVATIONS: Final = 2
@@ -33,7 +33,13 @@ def select_scans(folder: Path, pattern: str, left_out: Sequence[int]) -> dict[in
     return {number: path for number, path in enumerate(paths, start=1) if number not in left_out}
 
 
-def refined_points(scans: Mapping[int, Path], labels: pd.DataFrame, refine: Refine, n_pixels: int) -> pd.DataFrame:
+def refined_points(
+    scans: Mapping[int, Path],
+    labels: pd.DataFrame,
+    refine: Refine,
+    n_pixels: int,
+    line_times: LineTimes | None = None,
+) -> pd.DataFrame:
     """Points of every labelled scan, refined from the labels; columns as in `result_schemas.SCAN_POINTS`.
 
     Raises InputError naming a label outside its image, or one with no dot near it.
@@ -44,7 +50,7 @@ def refined_points(scans: Mapping[int, Path], labels: pd.DataFrame, refine: Refi
         if mine.empty:
             log.warning("%s: no label: left out", path)
             continue
-        scan = _read(path, n_pixels)
+        scan = _read(path, n_pixels, line_times)
         check_within(mine, scan, str(path))
         found = refine_points(refine, scan.intensity, mine[["u_px", "line"]])
         for row in np.flatnonzero(np.isnan(found[:, 0]))[:1]:
@@ -59,13 +65,15 @@ def refined_points(scans: Mapping[int, Path], labels: pd.DataFrame, refine: Refi
     return _joined(tables, scans)
 
 
-def detected_points(scans: Mapping[int, Path], refine: Refine, n_pixels: int) -> pd.DataFrame:
+def detected_points(
+    scans: Mapping[int, Path], refine: Refine, n_pixels: int, line_times: LineTimes | None = None
+) -> pd.DataFrame:
     """Points of every scan in which the board and its ids are found; columns as in `result_schemas.SCAN_POINTS`.
 
     A scan whose ids are in doubt is left out with a warning. Raises InputError naming a scan without a board.
     """
     tables = []
-    for number, path, scan, found in detected_in(scans, refine, n_pixels):
+    for number, path, scan, found in detected_in(scans, refine, n_pixels, line_times):
         if not found.board_found:
             remedy = f"add {number} to source.left_out, or label the scan"
             raise InputError(str(path), found.doubt, "a scan of the whole board", remedy)
@@ -77,16 +85,16 @@ def detected_points(scans: Mapping[int, Path], refine: Refine, n_pixels: int) ->
 
 
 def detected_in(
-    scans: Mapping[int, Path], refine: Refine, n_pixels: int
+    scans: Mapping[int, Path], refine: Refine, n_pixels: int, line_times: LineTimes | None = None
 ) -> Iterator[tuple[int, Path, Scan, Detection]]:
     """Each scan's number, path, lines and what is detected in it, one after the other."""
     for number, path in scans.items():
-        scan = _read(path, n_pixels)
+        scan = _read(path, n_pixels, line_times)
         yield number, path, scan, detect(scan, refine)
 
 
-def _read(path: Path, n_pixels: int) -> Scan:
-    scan = read_scan(path)
+def _read(path: Path, n_pixels: int, line_times: LineTimes | None) -> Scan:
+    scan = read_scan(path, line_times)
     if scan.intensity.shape[1] != n_pixels:
         found, expected = f"{scan.intensity.shape[1]} pixels a line", f"{n_pixels}, as camera.n_pixels says"
         raise InputError(str(path), found, expected, "correct camera.n_pixels, or restore the scan")

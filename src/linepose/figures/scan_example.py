@@ -13,7 +13,7 @@ from linepose.config.platform import ScansSection
 from linepose.errors import InputError
 from linepose.extraction.board_in_scan import BoardInScan, fit_board
 from linepose.extraction.scan_survey import select_scans
-from linepose.extraction.scans import Intensity, read_scan
+from linepose.extraction.scans import Intensity, read_intensity
 from linepose.figures.checks import usable_rows
 from linepose.figures.results import PlatformResults
 from linepose.pattern import SHEET_M, board_points
@@ -59,15 +59,15 @@ def scan_examples(results: PlatformResults, table: str) -> list[ScanExample]:
         raise InputError(f"{table}.parquet", "none", expected, "label more points")
     paths = select_scans(folder, source.scans, source.left_out)
     return [
-        ScanExample(title, _intensity(paths[number]), views[number], boards[number])
+        ScanExample(title, _read_once(paths[number]), views[number], boards[number])
         for number, title in chosen(boards).items()
     ]
 
 
 @lru_cache(maxsize=3)
-def _intensity(path: Path) -> Intensity:
-    """A scan's lines, read once for all figures."""
-    return read_scan(path).intensity
+def _read_once(path: Path) -> Intensity:
+    """A scan's lines, kept for the other figures."""
+    return read_intensity(path)
 
 
 def board_of(view: pd.DataFrame) -> BoardInScan:
