@@ -14,6 +14,7 @@ pytestmark = pytest.mark.workflow
 def test_every_result_is_made(finished):
     made = set(finished.results())
     stages = ["points", "observations", "outliers", "optima", "pose", "diagnostics", "truth", "truth_error"]
+    stages += ["extraction_accuracy", "detection", "detected_points"]
     assert {f"tiny/{stage}.parquet" for stage in stages} <= made
     assert {"regression.parquet", "tiny/mcmc/all.parquet", "tiny/mcmc/inliers.parquet"} <= made
 
@@ -35,6 +36,12 @@ def test_points_are_those_of_the_simulation(finished):
     assert len(both) == len(points) == 60
     np.testing.assert_allclose(both["u_px"], both["u_px_true"], atol=0.2)
     np.testing.assert_allclose(both["line"], both["line_true"], atol=0.3)
+
+
+def test_all_points_are_detected_without_labels(finished):
+    detection = pd.read_parquet(finished.folder / "results" / "tiny" / "detection.parquet")
+    assert detection["n_visible"].tolist() == detection["n_found"].tolist() == [15] * 4
+    assert detection["n_wrong"].sum() == 0
 
 
 def test_nothing_is_left_to_do_after_a_run(finished):
@@ -178,3 +185,15 @@ def test_simulated_platforms_run_when_the_field_data_cannot_be_had(tmp_path):
     told = "data set ladybird: not in data and not to be downloaded; only the other platforms run: tiny"
     assert len(lines_with(told, run.stderr + run.stdout)) == 1, run.stderr
     assert "results/ladybird/" not in run.stdout + run.stderr
+
+
+def test_snakemakes_own_report_has_every_figure_with_title_and_caption(finished, tmp_path):
+    run = finished.run("--report", str(tmp_path / "report.html"))
+    assert run.returncode == 0, run.stderr
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    drawn = pd.read_parquet(finished.folder / "results" / "tiny" / "figures" / "index.parquet").query("left_out == ''")
+    assert len(drawn) > 10
+    for title in drawn["title"]:
+        assert f'"labels": {{"figure": "{title}"' in page
+    assert page.count("platform <tt") == len(drawn)  # the end of each figure's caption
+    assert '{"result": "summary of all platforms"}' in page

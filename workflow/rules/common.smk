@@ -8,6 +8,7 @@ from linepose.config.project import load_project
 from linepose.datasets import can_be_reached
 from linepose.errors import LineposeError
 from linepose.provenance import files_digest, source_digest
+from linepose.storage import read_table
 
 
 def can_download(dataset):

@@ -93,6 +93,12 @@ class MappingSection(Section):
     perturbation_deg: PositiveFloat = Field(1.0, description="Turn about each body axis of the perturbed pose (deg).")
 
 
+class ClockOffsetSection(Section):
+    """The camera's clock against the navigation's, one parameter beside the pose; needs a raw navigation log."""
+
+    maximum_s: PositiveFloat = Field(0.1, description="The clocks differ by no more than this (s).")
+
+
 class SensitivitySection(Section):
     """The pose under other choices."""
 
@@ -124,6 +130,9 @@ class ExperimentsSection(Section):
     mapping: MappingSection | None = Field(MappingSection(), description="Mapping.")
     sensitivity: SensitivitySection | None = Field(SensitivitySection(), description="Other choices.")
     noise_models: NoiseModelsSection | None = Field(None, description="All noise models side by side.")
+    clock_offset: ClockOffsetSection | None = Field(
+        None, description="Clock offset, of platforms with scans and a raw navigation log only."
+    )
 
     def other_platforms(self) -> list[str]:
         """Platform files that an experiment compares with."""

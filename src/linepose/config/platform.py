@@ -21,11 +21,13 @@ from pydantic import (
 
 from linepose.camera import Camera, CameraSigmas
 from linepose.config.experiments import ExperimentsSection
+from linepose.config.map_frame import MapFrameSection
 from linepose.config.navigation_formats import Navigation
 from linepose.config.outline import OutlineSection
 from linepose.config.schema import Section, faults_of, validated
 from linepose.errors import InputError
 from linepose.likelihood.names import NoiseModelName
+from linepose.likelihood.prior import PosePrior, pose_prior
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
 from linepose.rotations import Floats
 from linepose.simulate.settings import SimulationSettings, settings_from_dict
@@ -99,26 +101,6 @@ class NavigationSection(Section):
         return columns
 
 
-class MapFrameSection(Section):
-    """Where on the Earth the survey's north, east and down are; for exports of mapped points only."""
-
-    crs: str | None = Field(
-        None,
-        description="Projected reference system, in metres, whose northing and easting the positions are, such as "
-        "EPSG:32756 (UTM zone 56 south, WGS84).",
-    )
-    origin: Triple | None = Field(
-        None,
-        description="Or, of local positions, their origin: latitude, longitude (deg), ellipsoidal height (m), WGS84.",
-    )
-
-    @model_validator(mode="after")
-    def _one_of_two(self) -> "MapFrameSection":
-        if (self.crs is None) == (self.origin is None):
-            raise ValueError("either crs or origin")
-        return self
-
-
 class LabelledViewsSection(Section):
     """Labelled points that already carry the body pose: CSV files, one a view of the pattern."""
 
@@ -189,6 +171,7 @@ class ScansSection(Section):
         """Every file that is read, of a data set in this folder."""
         scans = list(folder.glob(self.scans))
         beside = {path for scan in scans for path in scan.parent.glob(f"{glob.escape(scan.stem)}[.-]*")}
+        beside |= {scan.with_suffix("") for scan in scans}  # run.bil of run.bil.hdr
         if self.time_stamps == "resonon":
             beside |= {path for scan in scans for suffix in ("*.times", "*.lcf") for path in scan.parent.glob(suffix)}
         elif self.time_stamps == "headwall":
@@ -245,6 +228,11 @@ class Platform(Section):
         "reported (the paper). shared: the navigation error is common to a view, its level inferred (recommended). "
         "robust: shared, with heavy tails for bad views and points.",
     )
+    prior: Literal["none", "hand_measured"] = Field(
+        "none",
+        description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start. "
+        "none: the data decide alone, as in the paper.",
+    )
     published: Literal["ladybird", "ladybird_attitude", "ladybird_simulated", "shrimp_simulated"] | None = Field(
         None,
         description="The published numbers that the results are held against, if any; the noise model must be the "
@@ -263,6 +251,15 @@ class Platform(Section):
             raise ValueError("either source.dataset, or a simulation with a source of kind scans")
         return self
 
+    @model_validator(mode="after")
+    def _has_a_log_for_a_clock_offset(self) -> "Platform":
+        if self.experiments.clock_offset is not None and self.source.kind != "scans":
+            raise ValueError(
+                "no experiments.clock_offset here: labelled views hold body poses and no log; a source of kind scans "
+                "has one"
+            )
+        return self
+
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""
         return self.camera.intrinsics()
@@ -276,6 +273,14 @@ class Platform(Section):
         hand = self.hand_measured
         sigma = np.repeat([hand.sigma_position_m, np.deg2rad(hand.sigma_euler_deg)], 3)
         return rotation_vector_covariance(self._hand_measured_euler_pose(), np.diag(sigma**2))
+
+    def hand_measurement(self) -> PosePrior:
+        """The hand-measured pose with its covariance, whether it counts as a prior or not."""
+        return pose_prior(self.start_pose(), self.start_covariance())
+
+    def pose_prior(self) -> PosePrior | None:
+        """The pose's prior; None where the data decide alone."""
+        return self.hand_measurement() if self.prior == "hand_measured" else None
 
     def _hand_measured_euler_pose(self) -> Floats:
         return np.concatenate([self.hand_measured.position_m, np.deg2rad(self.hand_measured.euler_deg)])

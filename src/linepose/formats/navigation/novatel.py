@@ -62,7 +62,8 @@ def read_messages(path: Path) -> Messages:
 
     rows: dict[str, list[Row]] = {}
     unusable = unknown = read = 0
-    for message in FileParser(str(path)):
+    parser = FileParser(str(path))
+    for message in parser:
         if isinstance(message, UnknownBytes):
             unknown += len(message.data)
             continue
@@ -76,6 +77,7 @@ def read_messages(path: Path) -> Messages:
             unusable += 1
             continue
         rows.setdefault(name, []).append(_ROW_OF[name](message))
+    unknown += int(str(parser.flush()))  # what the file ends with and is no whole message
     if not read:
         remedy = "give a log of INSPVA or INSPVAX messages, or correct source.navigation.format"
         raise InputError(str(path), "no NovAtel message", "an ASCII or binary log", remedy)
