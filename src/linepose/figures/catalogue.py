@@ -24,7 +24,7 @@ from linepose.figures import (
     uncertainty,
 )
 from linepose.figures.results import PlatformResults
-from linepose.figures.scan_example import scan_example
+from linepose.figures.scan_example import scan_examples
 
 
 @dataclass(frozen=True)
@@ -101,26 +101,6 @@ def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
     return lambda r: residuals.residuals_caption(r.table("residuals", result_schemas.RESIDUALS), by)
 
 
-def _stacked_scan(r: PlatformResults) -> Figure:
-    example = scan_example(r)
-    return scan.stacked_scan(example.intensity, example.points)
-
-
-def _stacked_scan_caption(r: PlatformResults) -> str:
-    example = scan_example(r)
-    return scan.stacked_scan_caption(example.intensity, example.observation)
-
-
-def _labelled_points(r: PlatformResults) -> Figure:
-    example = scan_example(r)
-    return scan.labelled_points(example.intensity, example.points)
-
-
-def _labelled_points_caption(r: PlatformResults) -> str:
-    example = scan_example(r)
-    return scan.labelled_points_caption(example.points, example.observation)
-
-
 def _without(key: str) -> Callable[[Platform], str]:
     told = f"This experiment was not asked for: experiments.{key} is null in the platform's file."
     return lambda platform: "" if getattr(platform.experiments, key) else told
@@ -142,6 +122,11 @@ def _without_scans(platform: Platform) -> str:
     return told if kind == "labelled_views" else ""
 
 
+def _without_truth(platform: Platform) -> str:
+    told = "Detection is tried beside the labels only where the truth is known: in simulated platforms."
+    return "" if platform.simulation else told
+
+
 FIGURES: Final = (
     CatalogueEntry(
         "survey_plan",
@@ -157,19 +142,28 @@ FIGURES: Final = (
         "stacked_scan",
         "Stacked scan",
         "Figure 6",
-        "grey image of one observation's scan lines with the pattern framed",
-        _stacked_scan,
-        _stacked_scan_caption,
+        "grey images of a few observations' scan lines with the pattern's sheet framed",
+        lambda r: scan.stacked_scan(scan_examples(r, "points")),
+        lambda r: scan.stacked_scan_caption(scan_examples(r, "points")),
         _without_scans,
     ),
     CatalogueEntry(
         "labelled_points",
         "Points found in the scan",
         "Figure 7",
-        "close-up of the pattern in a scan, each point crossed and numbered",
-        _labelled_points,
-        _labelled_points_caption,
+        "close-ups of the pattern in scans, each point crossed and numbered",
+        lambda r: scan.points_in_scan(scan_examples(r, "points")),
+        lambda r: scan.labelled_points_caption(scan_examples(r, "points")),
         _without_scans,
+    ),
+    CatalogueEntry(
+        "detected_points",
+        "Points detected without labels",
+        "",
+        "close-ups of the pattern in scans, each detected point crossed and numbered",
+        lambda r: scan.points_in_scan(scan_examples(r, "detected_points")),
+        lambda r: scan.detected_points_caption(scan_examples(r, "detected_points")),
+        _without_truth,
     ),
     CatalogueEntry(
         "outliers",
