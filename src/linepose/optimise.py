@@ -105,6 +105,7 @@ def climb(likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, searc
     Gradients are central differences, in one batch.
     """
     search, first = search or Search(), np.asarray(parameters, dtype=float)
+    likelihood = likelihood.around(first)
     centre = likelihood.start(start)
     half_width = likelihood.half_widths(search.half_width_m, search.half_width_rad)
     origin = np.arcsin(np.clip((first - centre) / half_width, -1.0, 1.0))
