@@ -15,7 +15,7 @@ with stage(snakemake) as log:
     platform = Platform.model_validate(snakemake.params.platform)
     search = SearchSection.model_validate(snakemake.params.search).settings()
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
     names = likelihood.parameter_names[6:]
     schema = with_parameters(OPTIMA, [*names, *laplace_sigma_columns(names)])

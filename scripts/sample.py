@@ -19,7 +19,7 @@ with stage(snakemake) as log:
     platform = Platform.model_validate(snakemake.params.platform)
     settings = sampling_settings(snakemake.params.sampling)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
     names = likelihood.parameter_names
     optima = read_table(snakemake.input.optima, OPTIMA).set_index("stage")[list(names)]

@@ -20,7 +20,7 @@ with stage(snakemake) as log:
     if platform.noise_model == PUBLISHED:  # the other models' residuals are in pixels
         changes["residual in pixels"] = PixelLikelihood(nominal)
     for name, camera in camera_changes(platform.intrinsics()).items():
-        changes[name] = likelihood_of(platform.noise_model, nominal.survey, camera)
+        changes[name] = likelihood_of(platform.noise_model, nominal.survey, camera, platform.pose_prior())
     files = zip(snakemake.input.other_observations, snakemake.input.other_outliers, strict=True)
     for (name, other), (observations, outliers) in zip(snakemake.params.others.items(), files, strict=True):
         alike = Platform.model_validate(other | {"noise_model": platform.noise_model})

@@ -8,6 +8,7 @@ from typing import Final
 import pyarrow as pa
 
 from linepose.experiments.basin import START_COLUMNS
+from linepose.experiments.clock_offset import CORRELATION_COLUMNS
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.experiments.noise_models import EXTRA_PARAMETERS, LEVEL_COLUMNS
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
@@ -125,5 +126,26 @@ PUBLISHED_POSES: Final = pa.schema(
         *texts("platform", "set", "parameter"),
         *floats("published", "obtained", "difference_sigmas", "published_sigma", "obtained_sigma"),
         *texts("note"),
+    ]
+)
+PRIOR: Final = pa.schema(
+    [
+        *texts("parameter"),
+        *floats("difference", "sigma", "prior_sigma", "data_weight"),
+        *flags("prior_counted_in"),
+        *texts("decided_by"),
+    ]
+)
+CLOCK_OFFSET: Final = pa.schema(
+    [
+        *whole_numbers("n_observations"),
+        *texts("observations"),
+        *floats("offset_s", "sigma_s"),
+        *_optional("laplace_sigma_s"),
+        *floats("maximum_s", "shrinkage", "correlation_pose", *CORRELATION_COLUMNS),
+        *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
+        *floats(*(f"{name}_without" for name in (*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood")), "mahalanobis"),
+        *flags("told_apart"),
+        *texts("verdict", "advice"),
     ]
 )

@@ -56,27 +56,33 @@ def bounded(unbounded: ArrayLike, centre: ArrayLike, half_width: ArrayLike) -> F
 def optimise(likelihood: Likelihood, start: ArrayLike, search: Search | None = None) -> Optimum:
     """The optimum from a start pose (6,): by Powell's method (section 3.5), then by gradients where the model has more.
 
-    Raises InputError for a start that is not finite.
+    All ranges are centred on the start. Raises InputError for a start that is not finite.
     """
     search = search or Search()
+    first = likelihood.start(check_pose(start, "start pose"))
+    half_width = likelihood.half_widths(search.half_width_m, search.half_width_rad)
+    return optimise_within(likelihood, first, first, half_width, search)
+
+
+def optimise_within(
+    likelihood: Likelihood, start: Floats, centre: Floats, half_width: Floats, search: Search
+) -> Optimum:
+    """The same from parameters (P,), within `centre +- half_width` (P,) each."""
     if likelihood.n_parameters == N_PARAMETERS:
-        return _powell(likelihood, check_pose(start, "start pose"), search)
+        return _powell(likelihood, start, centre, half_width, search)
     cheaper = likelihood.approach()
     if cheaper is not likelihood:
-        first = optimise(cheaper, start, search)
+        first = optimise_within(cheaper, start, centre, half_width, search)
     else:
         coarse = replace(search, x_tolerance=_COARSE_X, f_tolerance=_COARSE_F)
-        first = _powell(likelihood, check_pose(start, "start pose"), coarse)
-    found = climb(likelihood, first.parameters, start, search)
+        first = _powell(likelihood, start, centre, half_width, coarse)
+    found = _climb(likelihood, first.parameters, centre, half_width)
     return replace(found, n_evaluations=first.n_evaluations + found.n_evaluations)
 
 
-def _powell(likelihood: Likelihood, start: Floats, search: Search) -> Optimum:
-    """Powell's method over the pose around a start (6,), parameters beyond it where the model starts them."""
-    centre = likelihood.start(start)
-    half_width = likelihood.half_widths(search.half_width_m, search.half_width_rad)
-    half_width[N_PARAMETERS:] = 0.0
-    unbounded = np.zeros(len(centre))
+def _powell(likelihood: Likelihood, start: Floats, centre: Floats, half_width: Floats, search: Search) -> Optimum:
+    """Powell's method over the pose, parameters beyond it kept at the start's."""
+    unbounded = np.arcsin(np.clip((start - centre) / half_width, -1.0, 1.0))
     log_likelihood = likelihood.log_likelihood
 
     def objective(pose: Floats) -> float:
@@ -86,7 +92,7 @@ def _powell(likelihood: Likelihood, start: Floats, search: Search) -> Optimum:
 
     found = minimize(
         objective,
-        np.zeros(N_PARAMETERS),
+        unbounded[:N_PARAMETERS].copy(),
         method="Powell",
         options={"xtol": search.x_tolerance, "ftol": search.f_tolerance},
     )
@@ -104,10 +110,13 @@ def climb(likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, searc
 
     Gradients are central differences, in one batch.
     """
-    search, first = search or Search(), np.asarray(parameters, dtype=float)
-    likelihood = likelihood.around(first)
-    centre = likelihood.start(start)
+    search = search or Search()
     half_width = likelihood.half_widths(search.half_width_m, search.half_width_rad)
+    return _climb(likelihood, np.asarray(parameters, dtype=float), likelihood.start(start), half_width)
+
+
+def _climb(likelihood: Likelihood, first: Floats, centre: Floats, half_width: Floats) -> Optimum:
+    likelihood = likelihood.around(first)
     origin = np.arcsin(np.clip((first - centre) / half_width, -1.0, 1.0))
     unit = _UNIT * likelihood.half_widths(_UNIT_M, _UNIT_RAD) / half_width
     moves = _DIFFERENCE * np.vstack([np.eye(len(unit)), -np.eye(len(unit))])

@@ -42,6 +42,17 @@ _POINT = [*whole_numbers("observation", "point", "time_us"), *floats("u_px", *PO
 
 POINTS: Final = pa.schema(_POINT)
 SCAN_POINTS: Final = pa.schema([*whole_numbers("observation", "point", "time_us"), *floats("u_px", "line")])
+_SCAN: Final = [*whole_numbers("observation", "n_lines"), *floats("range_m", "v_px_per_line")]
+EXTRACTION_ACCURACY: Final = pa.schema(
+    [
+        *_SCAN,
+        *texts("method"),
+        *flags("chosen"),
+        *whole_numbers("n_points", "n_missing"),
+        *floats("bias_u_px", "sigma_u_px", "bias_v_px", "sigma_v_px"),
+    ]
+)
+DETECTION: Final = pa.schema([*_SCAN, *whole_numbers("n_visible", "n_found", "n_wrong"), *texts("doubt")])
 OBSERVATIONS: Final = pa.schema([*_POINT, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
 OUTLIERS: Final = pa.schema(
     [

@@ -4,6 +4,8 @@ def asked_for(platform):
     repeatability = experiments.repeatability
     asked = {
         "uncertainty": True,
+        "prior": True,
+        "clock_offset": experiments.clock_offset,
         "subsets": experiments.subsets,
         "repeatability": repeatability and repeatability.first,
         "splits": repeatability and repeatability.n_splits,
@@ -16,6 +18,17 @@ def asked_for(platform):
     }
     return [
         f"results/{platform}/{key}.parquet" for key, value in asked.items() if value
+    ]
+
+
+def results_of(platform):
+    """Every result of a platform that people read."""
+    always = ["pose", "diagnostics"]
+    against_truth = (
+        ["truth_error", "detection"] if platform in PROJECT.simulated else []
+    )
+    return asked_for(platform) + [
+        f"results/{platform}/{key}.parquet" for key in always + against_truth
     ]
 
 
@@ -67,15 +80,31 @@ def drawn_from(wildcards):
 
 
 def reported(wildcards):
-    """Every result that the report's summaries rest on."""
+    """Every result that the report's summaries and sections rest on."""
     always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
     known = [
         file
         for platform in PLATFORMS
         for file in asked_for(platform)
         if Path(file).stem
-        in ("splits", "leave_one_out", "noise_models", "consistency_summary")
+        in (
+            "splits",
+            "leave_one_out",
+            "sensitivity",
+            "subsets",
+            "noise_models",
+            "consistency_summary",
+            "prior",
+            "clock_offset",
+        )
     ]
     return known + expand(
         "results/{platform}/{name}.parquet", platform=PLATFORMS, name=always
     )
+
+
+def figure_labels(wildcards):
+    """A figure's title and its number in the paper, for Snakemake's report."""
+    index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
+    entry = index.set_index("figure").loc[wildcards.figure]
+    return {"figure": entry["title"], "paper": entry["paper_figure"] or "beyond it"}

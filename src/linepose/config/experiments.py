@@ -66,8 +66,9 @@ class BasinSection(Section):
         ["powell", "wide"],
         min_length=1,
         description="Searches to compare on the same starts. powell: on the paper's equations, where points behind the "
-        "camera count as if in front. powell_in_front: as the poses are found, such points excluded. wide: rotations "
-        "first, then least squares, then Powell.",
+        "camera count as if in front, and with rotation components within +- pi. powell_in_front: as the poses are "
+        "found, such points excluded, all ranges centred on the start. wide: rotations first, then least squares, then "
+        "Powell.",
     )
     success_threshold: PositiveFloat = Field(
         0.1, description="A success ends nearer to the optimum than this (sigmas)."
@@ -90,6 +91,12 @@ class MappingSection(Section):
     """The observed points projected onto the pattern's plane."""
 
     perturbation_deg: PositiveFloat = Field(1.0, description="Turn about each body axis of the perturbed pose (deg).")
+
+
+class ClockOffsetSection(Section):
+    """The camera's clock against the navigation's, one parameter beside the pose; needs a raw navigation log."""
+
+    maximum_s: PositiveFloat = Field(0.1, description="The clocks differ by no more than this (s).")
 
 
 class SensitivitySection(Section):
@@ -123,6 +130,9 @@ class ExperimentsSection(Section):
     mapping: MappingSection | None = Field(MappingSection(), description="Mapping.")
     sensitivity: SensitivitySection | None = Field(SensitivitySection(), description="Other choices.")
     noise_models: NoiseModelsSection | None = Field(None, description="All noise models side by side.")
+    clock_offset: ClockOffsetSection | None = Field(
+        None, description="Clock offset, of platforms with scans and a raw navigation log only."
+    )
 
     def other_platforms(self) -> list[str]:
         """Platform files that an experiment compares with."""

@@ -57,7 +57,7 @@ class Reference:
 def read_accepted(platform: Platform, observations: Path | str, outliers: Path | str) -> Accepted:
     """From the results of the stages `associate` and `reject_outliers`."""
     survey = survey_from_table(read_table(observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
     inliers = stage_observations(read_table(outliers, OUTLIERS))["inliers"]
     return Accepted(likelihood, likelihood.select(inliers))
 

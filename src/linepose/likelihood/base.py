@@ -74,6 +74,10 @@ class Likelihood(ABC):
         """The same model made quicker near these parameters (P,); itself where it cannot be."""
         return self
 
+    def parameter_priors(self) -> dict[str, tuple[float, float]]:
+        """Centre and sigma of the prior that the model itself brings, by parameter; none of the pose."""
+        return {}
+
     @abstractmethod
     def log_likelihoods(self, parameters: ArrayLike) -> Floats:
         """Log-likelihood of each row; (K, P) to (K,), on all cores that the process may use."""
