@@ -69,7 +69,7 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
         return CheckReport(platform, (*findings, of_fault("data set", fault)))
     more, observations = recorded_findings(loaded, platform, root)
     findings += more
-    if observations is None:
+    if observations is None or any(finding.level == Level.ERROR for finding in findings):
         return CheckReport(platform, tuple(findings))
     more, sigmas = geometry_findings(settings, observations)
     return CheckReport(platform, (*findings, *more), sigmas)
