@@ -162,7 +162,8 @@ def _navigation_findings(
     reported = _attempt(read_reported, settings, folder, "covariances", findings)
     if reported is not None:
         findings += covariances.size_findings(reported)
-        findings += _column_findings(settings, folder)
+        if settings.source.covariances is not None:
+            findings += _column_findings(settings, folder / settings.source.covariances)
     navigation = settings.navigation
     if log is not None:
         findings += position_findings(log.position_m)
@@ -194,9 +195,9 @@ def _attempt(
         return None
 
 
-def _column_findings(settings: Platform, folder: Path) -> list[Finding]:
+def _column_findings(settings: Platform, path: Path) -> list[Finding]:
     """Which columns of the 12x12 covariances look like the attitude."""
-    _, values = read_numbers(folder / settings.source.covariances, 1 + _COVARIANCE_SIZE**2, "12x12 covariances")
+    _, values = read_numbers(path, 1 + _COVARIANCE_SIZE**2, "12x12 covariances")
     variances = values.reshape(-1, _COVARIANCE_SIZE, _COVARIANCE_SIZE).diagonal(axis1=1, axis2=2)
     sigma = np.sqrt(np.maximum(np.median(variances, axis=0), 0.0))
     return covariances.attitude_findings(sigma, settings.navigation.covariance_columns)

@@ -88,6 +88,11 @@ class SharedLikelihood(Likelihood):
         """Sigma of each parameter's prior (11,), infinite for the pose, which has none."""
         return np.concatenate([np.full(6, np.inf), self._prior_sigma])
 
+    def parameter_priors(self) -> dict[str, tuple[float, float]]:
+        """Centre and sigma of the priors of levels and intrinsics."""
+        centres, sigmas = self._prior_centre.tolist(), self._prior_sigma.tolist()
+        return dict(zip(SHARED_PARAMETERS[6:], zip(centres, sigmas, strict=True), strict=True))
+
     def start(self, pose: ArrayLike) -> Floats:
         """The pose (6,), with the prior's centre of everything else."""
         return np.concatenate([super().start(pose), self._prior_centre])

@@ -64,6 +64,11 @@ class PlatformSummary:
     neg_log_likelihood: float
     simulated: bool
 
+    @property
+    def plain_pose(self) -> list[PoseNumber]:
+        """Position and Euler angles, or the rotation vector where they do not tell the rotation."""
+        return self.rotation_vector[:3] + (self.euler or self.rotation_vector[3:])
+
 
 def summarise(results: PlatformResults) -> PlatformSummary:
     """The summary of a platform whose stages have all been run."""
