@@ -30,13 +30,14 @@ check: $(STAMP) ## Style, types and the workflow's own lint
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 
 bench: $(STAMP) ## Measure speed on this machine
-	for benchmark in benchmarks/*.py; do $(BIN)/python $$benchmark || exit 1; echo; done
+	@for name in machine likelihood pipeline experiments workflow shared; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
 
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
 	$(BIN)/python -m linepose.config.reference
 
-images: $(STAMP) ## Take the README's pictures from results/ladybird/figures
+images: $(STAMP) ## Make the pictures of README and docs, from results/ladybird/figures
 	$(BIN)/python -m linepose.report.pictures
+	$(BIN)/python -m linepose.figures.conventions
 
 lock: ## Take the newest versions that fit pyproject.toml into requirements.lock
 	rm -rf .venv-lock

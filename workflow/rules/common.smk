@@ -8,6 +8,7 @@ from linepose.config.project import load_project
 from linepose.datasets import can_be_reached
 from linepose.errors import LineposeError
 from linepose.provenance import files_digest, source_digest
+from linepose.storage import read_table
 
 
 def can_download(dataset):
@@ -54,9 +55,22 @@ def experiment(key):
     ].experiments.model_dump(mode="json")[key]
 
 
+def readable(wildcards):
+    """The check of what the platform recorded; what was simulated here needs none."""
+    if wildcards.platform in PROJECT.simulated:
+        return []
+    return f"results/logs/{wildcards.platform}/check_readable.passed"
+
+
 def platform_file(wildcards):
     """The platform's file, for messages."""
     return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
+
+
+def sampling(wildcards):
+    """How the platform's noise model is sampled, as a rule's parameter."""
+    noise_model = PROJECT.platforms[wildcards.platform].noise_model
+    return STUDY.sampling_of(noise_model).model_dump(mode="json")
 
 
 def section(key):

@@ -13,7 +13,7 @@ rule sample:
     threads: 2
     params:
         platform=settings,
-        sampling=section("sampling"),
+        sampling=sampling,
         seed=STUDY.seed,
         code=[
             source_digest("linepose.stages"),

@@ -15,7 +15,7 @@ rule subsets:
         subsets=experiment("subsets"),
         file=platform_file,
         search=section("search"),
-        sampling=section("sampling"),
+        sampling=sampling,
         seed=STUDY.seed,
         code=[
             source_digest("linepose.experiments.subsets"),

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
+import pandas as pd
 from matplotlib.figure import Figure
 
 from linepose import experiment_schemas, result_schemas
@@ -52,7 +53,8 @@ def _mapping(r: PlatformResults) -> Figure:
 def _angle_error(r: PlatformResults) -> Figure:
     points = r.table("estimated_points", result_schemas.ESTIMATED_POINTS)
     mapped = r.table("mapping", experiment_schemas.MAPPING)
-    return mapping.angle_error(mapped, points, r.table("observations", result_schemas.OBSERVATIONS), _angle_deg(r))
+    observations = r.table("observations", result_schemas.OBSERVATIONS)
+    return mapping.angle_error(mapped, points, observations, _angle_deg(r), r.true_points_m)
 
 
 def _angle_deg(r: PlatformResults) -> float:
@@ -77,9 +79,13 @@ def _sketch(r: PlatformResults) -> Figure:
     return platform_sketch.platform_sketch(r.samples(), r.platform.outline, r.marked_poses())
 
 
-def _repeatability(r: PlatformResults) -> Figure:
-    pair = r.table("repeatability", experiment_schemas.REPEATABILITY) if r.has("repeatability") else None
-    return repeatability.repeatability(r.table("splits", experiment_schemas.SPLITS), pair)
+def _named_pair(r: PlatformResults) -> pd.DataFrame | None:
+    return r.table("repeatability", experiment_schemas.REPEATABILITY) if r.has("repeatability") else None
+
+
+def _trace(r: PlatformResults) -> Figure:
+    marked = {name: pose for name, pose in r.marked_poses().items() if name != "hand measured"}
+    return trace.trace(r.samples(), marked)
 
 
 def _diagnostics_caption(r: PlatformResults) -> str:
@@ -242,7 +248,7 @@ FIGURES: Final = (
         "Trace of the chain",
         "",
         "each pose parameter over the steps of the chain",
-        lambda r: trace.trace(r.samples(), r.pose("inliers")),
+        _trace,
         lambda r: trace.trace_caption(r.table("diagnostics", result_schemas.DIAGNOSTICS)),
     ),
     CatalogueEntry(
@@ -274,8 +280,8 @@ FIGURES: Final = (
         "Repeatability",
         "",
         "histogram of the distance between poses from disjoint halves of the observations",
-        _repeatability,
-        lambda r: repeatability.repeatability_caption(r.table("splits", experiment_schemas.SPLITS)),
+        lambda r: repeatability.repeatability(r.table("splits", experiment_schemas.SPLITS), _named_pair(r)),
+        lambda r: repeatability.repeatability_caption(r.table("splits", experiment_schemas.SPLITS), _named_pair(r)),
         _without_splits,
     ),
 )

@@ -7,7 +7,7 @@ import pandas as pd
 from linepose.config.platform import ScansSection
 from linepose.errors import InputError
 from linepose.extraction.scan_survey import select_scans
-from linepose.extraction.scans import read_scan
+from linepose.extraction.scans import read_intensity
 from linepose.figures.results import PlatformResults
 from linepose.figures.scan import Intensity
 from linepose.result_schemas import SCAN_POINTS
@@ -30,4 +30,4 @@ def scan_example(results: PlatformResults) -> ScanExample:
     observation = results.accepted()[0]
     path = select_scans(folder, source.scans, source.left_out)[observation]
     points = results.table("points", SCAN_POINTS)
-    return ScanExample(observation, read_scan(path).intensity, points[points["observation"] == observation])
+    return ScanExample(observation, read_intensity(path), points[points["observation"] == observation])

@@ -66,6 +66,10 @@ class Likelihood(ABC):
         """Sigma (P,) with which walkers are scattered around the optimum, given the pose's."""
         return np.repeat([translation_m, rotation_rad], 3)
 
+    def approach(self) -> "Likelihood":
+        """A cheaper model of the same parameters, from whose optimum a search may start; itself where there is none."""
+        return self
+
     def parameter_priors(self) -> dict[str, tuple[float, float]]:
         """Centre and sigma of the prior that the model itself brings, by parameter; none of the pose."""
         return {}

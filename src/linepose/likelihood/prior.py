@@ -11,15 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from linepose.distance import difference_covariance, pose_difference
 from linepose.errors import InputError
 from linepose.likelihood.base import Likelihood, Residuals
 from linepose.pose import N_PARAMETERS, check_pose
-from linepose.rotations import (
-    Floats,
-    matrix_from_rotation_vector,
-    rotation_vector_from_matrix,
-    small_rotation_by_rotation_vector,
-)
+from linepose.rotations import Floats
 
 
 @dataclass(frozen=True)
@@ -31,9 +27,7 @@ class PosePrior:
 
     def difference(self, poses: ArrayLike) -> Floats:
         """Position and turn in body axes from the prior to poses (..., 6), each turn at most half a turn; (..., 6)."""
-        there = np.asarray(poses, dtype=float)
-        turn = matrix_from_rotation_vector(there[..., 3:]) @ matrix_from_rotation_vector(self.pose[3:]).T
-        return np.concatenate([there[..., :3] - self.pose[:3], rotation_vector_from_matrix(turn)], axis=-1)
+        return pose_difference(poses, self.pose)
 
     def log_density(self, poses: ArrayLike) -> Floats:
         """Logarithm of the density at poses (..., 6), but for a constant; (...)."""
@@ -51,9 +45,7 @@ def pose_prior(pose: ArrayLike, covariance: ArrayLike) -> PosePrior:
     Raises InputError for a covariance that is not positive definite.
     """
     centre = check_pose(pose, "prior")
-    jacobian = np.eye(N_PARAMETERS)
-    jacobian[3:, 3:] = small_rotation_by_rotation_vector(centre[3:])
-    turned = jacobian @ np.asarray(covariance, dtype=float) @ jacobian.T
+    turned = difference_covariance(centre, covariance)
     if not (np.all(np.isfinite(turned)) and np.linalg.eigvalsh(turned)[0] > 0):
         raise InputError("prior", "a covariance that is not positive definite", "one that is", "give positive sigmas")
     return PosePrior(centre, turned)
@@ -91,6 +83,11 @@ class WithPrior(Likelihood):
     def parameter_priors(self) -> dict[str, tuple[float, float]]:
         """Those of the inner model, which are beyond the pose."""
         return self.inner.parameter_priors()
+
+    def approach(self) -> "Likelihood":
+        """The cheaper inner model with the same prior; itself where there is none."""
+        cheaper = self.inner.approach()
+        return self if cheaper is self.inner else WithPrior(cheaper, self.prior)
 
     def log_likelihood(self, parameters: ArrayLike) -> float:
         """Logarithm of likelihood times prior at one parameter vector (P,)."""

@@ -123,7 +123,7 @@ def test_absurd_size_is_refused_before_memory_is_taken(tmp_path, cube, monkeypat
 def test_missing_data_file(tmp_path, cube):
     path = write_envi(tmp_path, cube)
     (tmp_path / "scan.img").unlink()
-    with pytest.raises(InputError, match=r"scan\.hdr"):
+    with pytest.raises(InputError, match=r"scan\.hdr: found no data file, expected scan\.bil, \.img, .* beside it"):
         read_scan(path)
 
 
@@ -148,6 +148,7 @@ def test_intensity_that_is_no_number(tmp_path, cube):
         (START_US + np.r_[0:10, 9:22], r"row 12: found time .*, expected a time after the line before it"),
         (START_US + np.r_[0:10, 5:18], "row 12: found time"),
         (np.arange(23) + 1_466_000_000, "they look like seconds"),
+        (np.arange(23) + 1_466_000_000, "row 2, column 1: found time 1466000000,"),
         (["soon"] * 23, "row 2: found 'soon', expected a whole number"),
     ],
 )
@@ -155,6 +156,13 @@ def test_times_that_cannot_be_right(tmp_path, cube, times, told):
     path = write_envi(tmp_path, cube)
     write_times(tmp_path, times)
     with pytest.raises(InputError, match=told):
+        read_scan(path)
+
+
+def test_times_that_are_no_text(tmp_path, cube):
+    path = write_envi(tmp_path, cube)
+    (tmp_path / "scan-times.csv").write_bytes(bytes(range(256)))
+    with pytest.raises(InputError, match=r"scan-times\.csv: found bytes that are not text"):
         read_scan(path)
 
 

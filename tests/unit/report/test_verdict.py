@@ -70,7 +70,9 @@ def test_each_fault_is_named_with_what_to_do(change, name, level, advice):
     check = named(verdict, name)
     assert (check.level, verdict.level) == (level, level)
     assert advice in check.advice
-    assert name.lower() in verdict.sentence
+    assert verdict.reasons == (check,)
+    assert check.brief
+    assert f"1 of {len(verdict.checks)} checks" in verdict.sentence
     assert all(other.level == Level.GOOD for other in verdict.checks if other is not check)
 
 
@@ -83,7 +85,8 @@ def test_the_papers_chain_is_called_too_short_but_not_its_pose():
 def test_the_worst_level_decides_the_sentence():
     verdict = judge(replace(FINE, converged=False, sigma_factor=2.0))
     assert verdict.level == Level.BAD
-    assert verdict.sentence == "Do not use this pose yet: convergence failed."
+    assert verdict.sentence == "Do not use this pose yet: 1 of 9 checks failed."
+    assert [check.name for check in verdict.reasons] == ["Convergence", "Repeatability"]
 
 
 def test_what_is_not_known_is_not_judged():
