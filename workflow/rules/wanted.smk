@@ -67,11 +67,11 @@ def drawn_from(wildcards):
         "basin_summary": experiments.basin,
         "mapping": experiments.mapping,
         "mapping_summary": experiments.mapping,
-        "detected_points": wildcards.platform in PROJECT.simulated,
         "weights": experiments.noise_models,
         "identifiability": experiments.noise_models,
         "consistency": experiments.noise_models,
         "consistency_summary": experiments.noise_models,
+        "detected_points": wildcards.platform in PROJECT.simulated,
     }
     return [
         f"results/{wildcards.platform}/{key}.parquet"

@@ -1,7 +1,6 @@
 """Every figure: its name, what it shows in words, how it is drawn from a platform's results, and its caption."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import pandas as pd
@@ -23,24 +22,10 @@ from linepose.figures import (
     trace,
     uncertainty,
 )
+from linepose.figures.entry import CatalogueEntry, without
+from linepose.figures.noise_catalogue import NOISE_FIGURES
 from linepose.figures.results import PlatformResults
 from linepose.figures.scan_example import scan_examples
-
-
-@dataclass(frozen=True)
-class CatalogueEntry:
-    """One figure: file stem, title, the paper's figure or nothing, what it shows, and how it is made.
-
-    `left_out` says in a sentence why a platform has none of it, and is empty where it should have one.
-    """
-
-    name: str
-    title: str
-    paper_figure: str
-    shows: str
-    draw: Callable[[PlatformResults], Figure]
-    caption: Callable[[PlatformResults], str]
-    left_out: Callable[[Platform], str] = lambda _: ""
 
 
 def _mapping(r: PlatformResults) -> Figure:
@@ -99,11 +84,6 @@ def _residuals(by: str) -> Callable[[PlatformResults], Figure]:
 
 def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
     return lambda r: residuals.residuals_caption(r.table("residuals", result_schemas.RESIDUALS), by)
-
-
-def _without(key: str) -> Callable[[Platform], str]:
-    told = f"This experiment was not asked for: experiments.{key} is null in the platform's file."
-    return lambda platform: "" if getattr(platform.experiments, key) else told
 
 
 def _without_splits(platform: Platform) -> str:
@@ -215,7 +195,7 @@ FIGURES: Final = (
         lambda r: mapping.mapping_caption(
             r.table("mapping_summary", experiment_schemas.MAPPING_SUMMARY), r.accepted()[0]
         ),
-        _without("mapping"),
+        without("mapping"),
     ),
     CatalogueEntry(
         "angle_error",
@@ -226,7 +206,7 @@ FIGURES: Final = (
         lambda r: mapping.angle_error_caption(
             r.table("mapping_summary", experiment_schemas.MAPPING_SUMMARY), _angle_deg(r)
         ),
-        _without("mapping"),
+        without("mapping"),
     ),
     CatalogueEntry(
         "basin",
@@ -235,7 +215,7 @@ FIGURES: Final = (
         "grid of starts over distance and angle, coloured by whether the search found the optimum",
         _basin,
         _basin_caption,
-        _without("basin"),
+        without("basin"),
     ),
     CatalogueEntry(
         "trace",
@@ -278,4 +258,5 @@ FIGURES: Final = (
         lambda r: repeatability.repeatability_caption(r.table("splits", experiment_schemas.SPLITS), _named_pair(r)),
         _without_splits,
     ),
+    *NOISE_FIGURES,
 )

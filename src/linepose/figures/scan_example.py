@@ -59,14 +59,14 @@ def scan_examples(results: PlatformResults, table: str) -> list[ScanExample]:
         raise InputError(f"{table}.parquet", "none", expected, "label more points")
     paths = select_scans(folder, source.scans, source.left_out)
     return [
-        ScanExample(title, _read_once(paths[number]), views[number], boards[number])
+        ScanExample(title, _intensity(paths[number]), views[number], boards[number])
         for number, title in chosen(boards).items()
     ]
 
 
 @lru_cache(maxsize=3)
-def _read_once(path: Path) -> Intensity:
-    """A scan's lines, kept for the other figures."""
+def _intensity(path: Path) -> Intensity:
+    """A scan's lines, read once for all figures."""
     return read_intensity(path)
 
 

@@ -118,7 +118,7 @@ def test_the_page_answers_from_the_top(read):
     text = " ".join(" ".join(read.text).split())
     overview = text[text.index("Overview") : text.index("Can it be trusted?")]
     assert "Use this pose with care: look at 4 of 8 checks." in overview
-    assert "forward, r_x (m) 0.190 0.03" in overview  # the pose with its sigma
+    assert "r_x forward (m) 0.190 0.03" in overview  # the pose with its sigma
     assert "Halves of the observations differ 2.0 times as much as the sigmas promise. Multiply" in overview
     assert "The chain has 20 steps where 200 are needed. Set sampling.n_steps to 200" in overview
     assert "Chain too short: 20 steps" in text
