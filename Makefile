@@ -40,7 +40,7 @@ readme-bench: $(STAMP) ## Measure speed and put the figures into README.md; on a
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
 	$(BIN)/python -m linepose.config.reference
 
-images: $(STAMP) ## Make the pictures of README and docs, from results/ladybird/figures
+images: $(STAMP) ## Make the pictures of README and docs, from results/
 	$(BIN)/python -m linepose.report.pictures
 	$(BIN)/python -m linepose.figures.conventions
 
