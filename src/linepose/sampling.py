@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from linepose.errors import EstimationError, InputError
 from linepose.likelihood.base import Likelihood
+from linepose.likelihood.names import PUBLISHED
 from linepose.moves import independence_move
 from linepose.optimise import laplace_covariance
 from linepose.rotations import Floats
@@ -105,6 +106,11 @@ def sample(
         log_likelihood=sampler.get_log_prob(),
         acceptance_fraction=sampler.acceptance_fraction,
     )
+
+
+def default_settings(noise_model: str) -> SamplingSettings | IndependenceSettings:
+    """The settings that a noise model is sampled with where nothing else is said."""
+    return SamplingSettings() if noise_model == PUBLISHED else IndependenceSettings()
 
 
 def section_of(settings: SamplingSettings | IndependenceSettings) -> str:

@@ -8,7 +8,7 @@ from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
-from linepose.likelihood.names import PUBLISHED
+from linepose.likelihood.names import sampling_section
 from linepose.optimise import Search
 from linepose.sampling import IndependenceSettings, SamplingSettings
 
@@ -101,7 +101,9 @@ class Study(Section):
 
     def sampling_of(self, noise_model: str) -> SamplingSection | IndependenceSamplingSection:
         """The sampling section for a noise model."""
-        return self.sampling if noise_model == PUBLISHED else self.independence_sampling
+        section = getattr(self, sampling_section(noise_model))
+        assert isinstance(section, SamplingSection | IndependenceSamplingSection)
+        return section
 
 
 def load_dataset(path: Path) -> DatasetSection:

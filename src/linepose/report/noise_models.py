@@ -90,8 +90,8 @@ def _recommendation(published: float, shared: float) -> str:
     word = "too small" if shared > 1 else "larger than these halves need"
     return (
         f"On these observations the shared model's sigmas are {word} by the factor above, further off than the "
-        "published ones: the errors here are not of the kind that it is made for, so compare both poses before you rely "
-        "on either."
+        "published ones: the errors here are not of the kind that it is made for, so compare both poses before you "
+        "rely on either."
     )
 
 
