@@ -43,7 +43,7 @@ class IndependenceSettings:
 
     n_walkers: int = 24
     n_burn_in: int = 160
-    n_steps: int = 640
+    n_steps: int = 1000
     independent_share: float = 0.9
 
 
@@ -90,7 +90,6 @@ def sample(
         )
     random = np.random.RandomState(seed)
     centre = np.asarray(optimum, dtype=float)
-    likelihood = likelihood.around(centre)
     if isinstance(settings, IndependenceSettings):
         start, moves = _fitted_proposals(likelihood, centre, random, settings, show_progress)
     else:
