@@ -128,7 +128,7 @@ def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
             threshold_px=study.outliers.threshold_px,
             minimum_observations=study.outliers.minimum_observations,
             search=study.search.settings(),
-            sampling=study.sampling.settings(),
+            sampling=study.sampling_of(settings.noise_model).settings(),
             seed=study.seed,
         ),
     )

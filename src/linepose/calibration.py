@@ -25,7 +25,14 @@ from linepose.optimise import Search
 from linepose.outliers import outlier_table, reject_outliers, stage_observations
 from linepose.pose import N_PARAMETERS
 from linepose.residual_tables import residual_tables
-from linepose.sampling import SamplingSettings, sample, stage_seed
+from linepose.sampling import (
+    IndependenceSettings,
+    SamplingSettings,
+    default_settings,
+    sample,
+    section_of,
+    stage_seed,
+)
 from linepose.stages import diagnostics_table, optimise_stages, pose_table, sample_table
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
@@ -37,14 +44,14 @@ class CalibrationSettings:
     """How a calibration is made; the defaults are those of config/config.yaml.
 
     Observations whose mean reprojection error stays above `threshold_px` are removed, the worst first, down to
-    `minimum_observations`. Every random number follows from `seed`.
+    `minimum_observations`. Without `sampling` it is the noise model's default. Every random number follows from `seed`.
     """
 
     noise_model: str = "published"
     threshold_px: float = 5.0
     minimum_observations: int = 10
     search: Search = field(default_factory=Search)
-    sampling: SamplingSettings = field(default_factory=SamplingSettings)
+    sampling: SamplingSettings | IndependenceSettings | None = None
     seed: int = 2017
 
 
@@ -73,8 +80,9 @@ def calibrate(
     names = likelihood.parameter_names
     optimum = optima.loc[0, list(names)].to_numpy(dtype=float, copy=True)
     seed = stage_seed(settings.seed, len(accepted[_STAGE]))
-    chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, settings.sampling)
-    diagnostics = diagnose_samples(np.ascontiguousarray(chain.parameters[..., :N_PARAMETERS]))
+    sampling = settings.sampling or default_settings(settings.noise_model)
+    chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, sampling)
+    diagnostics = diagnose_samples(np.ascontiguousarray(chain.parameters), section_of(sampling))
     residuals, points = residual_tables(likelihood, accepted, {_STAGE: optimum})
     hand_sigma = np.sqrt(np.diag(hand_measured.covariance))
     return Calibration(
@@ -82,6 +90,7 @@ def calibrate(
         covariance=chain.covariance()[:N_PARAMETERS, :N_PARAMETERS],
         hand_measured=hand_measured,
         threshold_px=settings.threshold_px,
+        noise_model=settings.noise_model,
         observations=observations,
         outlier_removal=outliers,
         optima=optima,
