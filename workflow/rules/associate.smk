@@ -11,10 +11,6 @@ rule associate:
     params:
         platform=settings,
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=[
-            source_digest("linepose.navigation"),
-            source_digest("linepose.navigation_log"),
-            source_digest("linepose.formats.navigation"),
-        ],
+        code=source_digest("linepose.recorded"),
     script:
         "../../scripts/associate.py"

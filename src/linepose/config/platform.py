@@ -21,10 +21,13 @@ from pydantic import (
 
 from linepose.camera import Camera, CameraSigmas
 from linepose.config.experiments import ExperimentsSection
+from linepose.config.map_frame import MapFrameSection
 from linepose.config.navigation_formats import Navigation
 from linepose.config.outline import OutlineSection
-from linepose.config.schema import Section, validated
+from linepose.config.schema import Section, faults_of, validated
 from linepose.errors import InputError
+from linepose.likelihood.names import NoiseModelName
+from linepose.likelihood.prior import PosePrior, pose_prior
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
 from linepose.rotations import Floats
 from linepose.simulate.settings import SimulationSettings, settings_from_dict
@@ -219,11 +222,24 @@ class Platform(Section):
     simulation: Simulation | None = Field(
         None, description="A simulated survey with a known truth: keys and units in linepose.simulate.settings."
     )
-    noise_model: Literal["published"] = Field("published", description="The likelihood's model of the noise.")
+    noise_model: NoiseModelName = Field(
+        "published",
+        description="The likelihood's model of the noise. published: every line of a view errs independently, as "
+        "reported (the paper). shared: the navigation error is common to a view, its level inferred (recommended). "
+        "robust: shared, with heavy tails for bad views and points.",
+    )
+    prior: Literal["none", "hand_measured"] = Field(
+        "none",
+        description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start. "
+        "none: the data decide alone, as in the paper.",
+    )
     published: Literal["ladybird", "ladybird_attitude", "ladybird_simulated", "shrimp_simulated"] | None = Field(
-        None, description="The published numbers that the results are held against, if any."
+        None,
+        description="The published numbers that the results are held against, if any; the noise model must be the "
+        "published one for that.",
     )
 
+    map_frame: MapFrameSection | None = Field(None, description="Where the survey lies on the Earth.")
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
     experiments: ExperimentsSection = Field(
         ExperimentsSection(), description="Experiments on the accepted observations."
@@ -233,6 +249,15 @@ class Platform(Section):
     def _has_one_origin(self) -> "Platform":
         if (self.simulation is None) == (self.source.dataset is None):
             raise ValueError("either source.dataset, or a simulation with a source of kind scans")
+        return self
+
+    @model_validator(mode="after")
+    def _has_a_log_for_a_clock_offset(self) -> "Platform":
+        if self.experiments.clock_offset is not None and self.source.kind != "scans":
+            raise ValueError(
+                "no experiments.clock_offset here: labelled views hold body poses and no log; a source of kind scans "
+                "has one"
+            )
         return self
 
     def intrinsics(self) -> Camera:
@@ -249,6 +274,14 @@ class Platform(Section):
         sigma = np.repeat([hand.sigma_position_m, np.deg2rad(hand.sigma_euler_deg)], 3)
         return rotation_vector_covariance(self._hand_measured_euler_pose(), np.diag(sigma**2))
 
+    def hand_measurement(self) -> PosePrior:
+        """The hand-measured pose with its covariance, whether it counts as a prior or not."""
+        return pose_prior(self.start_pose(), self.start_covariance())
+
+    def pose_prior(self) -> PosePrior | None:
+        """The pose's prior; None where the data decide alone."""
+        return self.hand_measurement() if self.prior == "hand_measured" else None
+
     def _hand_measured_euler_pose(self) -> Floats:
         return np.concatenate([self.hand_measured.position_m, np.deg2rad(self.hand_measured.euler_deg)])
 
@@ -259,6 +292,15 @@ def load_platform(folder: Path, name: str) -> Platform:
     Raises InputError for a file that is missing, is not YAML, or says something that no platform has.
     """
     return validated(Platform, _merged_values(folder, name, []), str(folder / f"{name}.yaml"))
+
+
+def platform_faults(folder: Path, name: str) -> list[InputError]:
+    """Every fault of config/platforms/NAME.yaml; none where `load_platform` would read it."""
+    try:
+        values = _merged_values(folder, name, [])
+    except InputError as error:
+        return [error]
+    return faults_of(Platform, values, str(folder / f"{name}.yaml"))
 
 
 def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:

@@ -30,6 +30,18 @@ def validated(model: type[Model], values: Any, place: str) -> Model:
         raise InputError(f"{place}: {error.place}", error.found, error.expected, error.remedy) from None
 
 
+def faults_of(model: type[Section], values: Any, place: str) -> list[InputError]:
+    """Every fault of the values as a model, misspelt keys first; none where they are right."""
+    try:
+        model.model_validate(values)
+    except ValidationError as error:
+        faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+        return [_one_line(model, fault, place) for fault in faults]
+    except InputError as error:
+        return [InputError(f"{place}: {error.place}", error.found, error.expected, error.remedy)]
+    return []
+
+
 def _one_line(model: type[Section], fault: ErrorDetails, place: str) -> InputError:
     location = [str(part) for part in fault["loc"]]
     named = fault["type"] in {"extra_forbidden", "missing"}  # the last part is then a key that is not to be looked up

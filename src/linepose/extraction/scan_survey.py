@@ -1,15 +1,16 @@
 """From scans to observed points: by labels that are refined, or by detection without any."""
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from linepose.errors import InputError
-from linepose.extraction.detect import detect
+from linepose.extraction.detect import Detection, detect
 from linepose.extraction.labels import check_within
 from linepose.extraction.refine import Refine, refine_points
 from linepose.extraction.scans import LineTimes, Scan, read_scan
@@ -60,8 +61,8 @@ def refined_points(
                 "a bright dot on dark print",
                 "correct or remove the label",
             )
-        tables.append(_table(number, scan, mine["point"].to_numpy(), found))
-    return _joined(tables, len(scans))
+        tables.append(scan_points(number, scan, mine["point"].to_numpy(), found))
+    return _joined(tables, scans)
 
 
 def detected_points(
@@ -72,17 +73,24 @@ def detected_points(
     A scan whose ids are in doubt is left out with a warning. Raises InputError naming a scan without a board.
     """
     tables = []
-    for number, path in scans.items():
-        scan = _read(path, n_pixels, line_times)
-        found = detect(scan, refine)
+    for number, path, scan, found in detected_in(scans, refine, n_pixels, line_times):
         if not found.board_found:
             remedy = f"add {number} to source.left_out, or label the scan"
             raise InputError(str(path), found.doubt, "a scan of the whole board", remedy)
         if found.doubt:
             log.warning("observation %d (%s) is left out: %s", number, path.name, found.doubt)
             continue
-        tables.append(_table(number, scan, found.point, np.stack([found.u_px, found.line], axis=-1)))
-    return _joined(tables, len(scans))
+        tables.append(scan_points(number, scan, found.point, found.position))
+    return _joined(tables, scans)
+
+
+def detected_in(
+    scans: Mapping[int, Path], refine: Refine, n_pixels: int, line_times: LineTimes | None = None
+) -> Iterator[tuple[int, Path, Scan, Detection]]:
+    """Each scan's number, path, lines and what is detected in it, one after the other."""
+    for number, path in scans.items():
+        scan = _read(path, n_pixels, line_times)
+        yield number, path, scan, detect(scan, refine)
 
 
 def _read(path: Path, n_pixels: int, line_times: LineTimes | None) -> Scan:
@@ -93,7 +101,8 @@ def _read(path: Path, n_pixels: int, line_times: LineTimes | None) -> Scan:
     return scan
 
 
-def _table(number: int, scan: Scan, point: np.ndarray, position: Floats) -> pd.DataFrame:
+def scan_points(number: int, scan: Scan, point: NDArray[np.int64], position: Floats) -> pd.DataFrame:
+    """Points (n,) of one observation at positions (n, 2) of u and line; columns as in `result_schemas.SCAN_POINTS`."""
     return pd.DataFrame(
         {
             "observation": number,
@@ -105,12 +114,12 @@ def _table(number: int, scan: Scan, point: np.ndarray, position: Floats) -> pd.D
     )
 
 
-def _joined(tables: list[pd.DataFrame], n_scans: int) -> pd.DataFrame:
+def _joined(tables: list[pd.DataFrame], scans: Mapping[int, Path]) -> pd.DataFrame:
     tables = [table for table in tables if len(table)]
     if len(tables) < _FEWEST_OBSERVATIONS:
         raise InputError(
-            "extraction",
-            f"{len(tables)} of {n_scans} scans with known points",
+            str(next(iter(scans.values())).parent) if scans else "source.scans",
+            f"{len(tables)} of {len(scans)} scans with known points",
             f"at least {_FEWEST_OBSERVATIONS}",
             "add scans of the whole board, or label them",
         )

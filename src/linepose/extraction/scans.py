@@ -72,6 +72,25 @@ def read_intensity(path: Path) -> Intensity:
     return reader(path)
 
 
+def scan_size(path: Path) -> tuple[int, int]:
+    """Lines and pixels of a scan, from its header alone: no intensity is read; raises InputError as `read_scan`."""
+    if not path.is_file():
+        raise InputError(str(path), "no such file", "a scan", "restore it, or correct source.scans")
+    if path.suffix.lower() == ".hdr":
+        n_lines, n_samples, _ = _open_envi(path).shape
+        return int(n_lines), int(n_samples)
+    if path.suffix.lower() not in _READERS:
+        raise InputError(str(path), f"file type {path.suffix!r}", f"one of {', '.join(_READERS)}", "convert the scan")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(path) as image:
+                return image.height, image.width
+    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, SyntaxError, ValueError) as error:
+        found = " ".join(str(error).split())
+        raise InputError(str(path), found, "a whole PNG or TIFF file", "restore the scan") from None
+
+
 def times_path(path: Path) -> Path:
     """Where the time stamps of a scan file stand."""
     return path.with_name(f"{path.stem}-times.csv")
@@ -88,7 +107,10 @@ def read_times(path: Path) -> tuple[NDArray[np.int64], int]:
     """Whole numbers, one a row, and how many rows (0 or 1) the heading takes; raises InputError for anything else."""
     if not path.is_file():
         raise InputError(str(path), "no such file", "the time stamp of each line", "put it beside the scan")
-    rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
+    try:
+        rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
+    except UnicodeDecodeError:
+        raise InputError(str(path), "bytes that are not text", "a time stamp a row", "restore the file") from None
     heading = int(bool(rows) and rows[0] == "time_us")
     times = np.empty(len(rows) - heading, dtype=np.int64)
     for index, cell in enumerate(rows[heading:]):
@@ -108,7 +130,7 @@ def check_line_times(times: NDArray[np.int64], n_lines: int, path: Path, heading
     if len(times) != n_lines:
         remedy = "restore the file that is incomplete"
         raise InputError(str(path), f"{len(times)} time stamps", f"{n_lines}, one for each line of the scan", remedy)
-    check_microseconds(times, path)
+    check_microseconds(times, path, first_row=heading + 1)
     backwards = np.flatnonzero(np.diff(times) <= 0)
     if backwards.size:
         row = int(backwards[0]) + 1
@@ -173,11 +195,15 @@ def _open_envi(path: Path) -> SpyFile:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             image: SpyFile = envi.open(str(path.resolve()))
+    except envi.EnviDataFileNotFoundError:
+        expected = f"{path.stem}.{interleave}, .img, .dat, .raw or .bin beside it"
+        raise InputError(str(path), "no data file", expected, "put the data file there") from None
     except (SpyException, ValueError, OSError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "an ENVI header with its data file beside it", "restore both") from None
     n_values = sizes["lines"] * sizes["samples"] * sizes["bands"]
-    _check_data_size(Path(image.filename), offset + n_values * np.dtype(image.dtype).itemsize, sizes)
+    data_path = path.with_name(Path(image.filename).name)
+    _check_data_size(data_path, offset + n_values * np.dtype(image.dtype).itemsize, sizes)
     return image
 
 

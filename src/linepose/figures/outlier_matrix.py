@@ -26,7 +26,7 @@ def outlier_matrix(outliers: pd.DataFrame) -> Figure:
         ascending=False
     )
     sizes, numbers = errors.index.to_numpy(), errors.columns.to_numpy()
-    figure = blank_figure(WIDE_IN, 1.3 + 0.16 * len(sizes))
+    figure = blank_figure(WIDE_IN, 1.4 + 0.15 * len(sizes))
     axes = figure.add_subplot()
     axes.grid(visible=False)
     edges = np.arange(len(numbers) + 1) - 0.5, np.arange(len(sizes) + 1) - 0.5
@@ -56,11 +56,13 @@ def outlier_matrix(outliers: pd.DataFrame) -> Figure:
     axes.set(xlabel="Observation", ylabel="Observations used")
     axes.set_xlim(-0.5, len(numbers) - 0.5)
     axes.set_ylim(len(sizes) - 0.5, -0.5)
-    bar = figure.colorbar(mesh, ax=axes, label="Mean reprojection error (px)", pad=0.02)
-    bar.ax.yaxis.set_major_locator(LogLocator(10, (1, 2, 5)))
-    bar.ax.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    bar = figure.colorbar(
+        mesh, ax=axes, label="Mean reprojection error (px)", location="bottom", pad=0.02, aspect=40, shrink=0.7
+    )
+    bar.ax.xaxis.set_major_locator(LogLocator(10, (1, 2, 5)))
+    bar.ax.xaxis.set_major_formatter(FormatStrFormatter("%g"))
     bar.ax.minorticks_off()
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=2)
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
 
 

@@ -22,7 +22,7 @@ def uncertainty(table: pd.DataFrame) -> Figure:
     `table` as in `experiment_schemas.UNCERTAINTY`.
     """
     rows = usable_rows(table, ["stage", "method", "n_observations", *SIGMA_COLUMNS], "uncertainty.parquet")
-    figure = blank_figure(HALF_PAGE_IN, 3.6)
+    figure = blank_figure(HALF_PAGE_IN, 3.9)
     panels = figure.subplots(2, 1, sharex=True)
     for panel, columns, names, unit, scale in (
         (panels[0], SIGMA_COLUMNS[:3], _NAMES[0], "position (mm)", 1e3),
@@ -37,7 +37,7 @@ def uncertainty(table: pd.DataFrame) -> Figure:
                 )
         panel.set_ylabel(f"Sigma of {unit}")
         panel.set_ylim(bottom=0)
-        panel.legend(ncols=3, loc="lower left")
+        panel.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)
     panels[1].set_xlabel("Observations used")
     panels[1].xaxis.set_major_locator(MaxNLocator(integer=True))
     accepted = int(rows.loc[rows["stage"] == "inliers", "n_observations"].iloc[0])

@@ -1,8 +1,11 @@
 """What the report says of one platform, gathered from its results."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+import pandas as pd
+import pyarrow as pa
 
 from linepose import experiment_schemas, result_schemas
 from linepose.experiments.split_summary import sigma_factor
@@ -22,6 +25,29 @@ from linepose.residual_tables import alike_in_a_view
 from linepose.rotations import Floats
 
 
+class Results(Protocol):
+    """The results of one platform, from files or from memory, as the verdict asks for them."""
+
+    @property
+    def threshold_px(self) -> float:
+        """Mean error (px) below which an observation is accepted."""
+
+    def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
+        """A result by its name."""
+
+    def has(self, name: str) -> bool:
+        """Whether this result was made."""
+
+    def survey(self) -> Survey:
+        """All observations."""
+
+    def accepted(self) -> list[int]:
+        """Numbers of the accepted observations."""
+
+    def samples(self) -> pd.DataFrame:
+        """The chain of the accepted observations."""
+
+
 @dataclass(frozen=True)
 class PlatformSummary:
     """One platform's part of the report."""
@@ -37,6 +63,11 @@ class PlatformSummary:
     n_accepted: int
     neg_log_likelihood: float
     simulated: bool
+
+    @property
+    def plain_pose(self) -> list[PoseNumber]:
+        """Position and Euler angles, or the rotation vector where they do not tell the rotation."""
+        return self.rotation_vector[:3] + (self.euler or self.rotation_vector[3:])
 
 
 def summarise(results: PlatformResults) -> PlatformSummary:
@@ -62,7 +93,7 @@ def summarise(results: PlatformResults) -> PlatformSummary:
     )
 
 
-def gather_evidence(results: PlatformResults, numbers: list[PoseNumber]) -> Evidence:
+def gather_evidence(results: Results, numbers: list[PoseNumber]) -> Evidence:
     """The numbers that the verdict rests on; `numbers` are the pose's six."""
     optimum = results.table("optima", result_schemas.OPTIMA).set_index("stage").loc["inliers"]
     chain = results.table("diagnostics", result_schemas.DIAGNOSTICS)
@@ -105,14 +136,14 @@ def tilt_spread_deg(survey: Survey) -> float:
     return float(np.sqrt(np.mean(np.sum((tilt - tilt.mean(axis=0)) ** 2, axis=1))))
 
 
-def _sigma_factor(results: PlatformResults) -> float | None:
+def _sigma_factor(results: Results) -> float | None:
     if not results.has("splits"):
         return None
     splits = results.table("splits", experiment_schemas.SPLITS)
     return sigma_factor(splits) if splits["mahalanobis"].notna().any() else None
 
 
-def _influence(results: PlatformResults) -> tuple[int | None, float | None]:
+def _influence(results: Results) -> tuple[int | None, float | None]:
     if not results.has("leave_one_out"):
         return None, None
     table = results.table("leave_one_out", experiment_schemas.LEAVE_ONE_OUT)

@@ -7,18 +7,19 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.text import Text
 from PIL import Image
 
 from linepose.figures.catalogue import FIGURES
 from linepose.figures.render import render_figures
 from linepose.figures.results import PlatformResults
-from linepose.figures.style import HALF_PAGE_IN, PNG_DPI, blank_figure, save
+from linepose.figures.style import HALF_PAGE_IN, LEAST_PT, PNG_DPI, blank_figure, save
 from linepose.result_schemas import FIGURES as SCHEMA
 from linepose.storage import write_table
 
 from .. import made_up
 
-WITHOUT_SCANS = {"stacked_scan", "labelled_points"}
+WITHOUT_SCANS = {"stacked_scan", "labelled_points", "detected_points"}
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +70,17 @@ def test_what_was_not_asked_for_is_said_and_what_is_missing_is_named(tmp_path):
         "uncertainty": "no such file",
     }.items():
         assert word in left_out[name]
+
+
+@pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in WITHOUT_SCANS], ids=lambda e: e.name)
+def test_text_can_be_read_where_the_figure_is_printed_at_half_a_page(drawn, entry):
+    folder, _ = drawn
+    figure = entry.draw(PlatformResults("made_up", made_up.platform(), folder, 5.0))
+    figure.draw_without_rendering()
+    shrunk = min(1.0, HALF_PAGE_IN / figure.get_figwidth())
+    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+    assert texts
+    assert min(text.get_fontsize() for text in texts) * shrunk >= LEAST_PT
 
 
 def test_pictures_have_the_stated_size(drawn):

@@ -2,15 +2,10 @@ import pytest
 
 from linepose.figures.render import render_figures
 from linepose.figures.results import PlatformResults
-from linepose.report.page import (
-    PlatformOnPage,
-    figures_on_page,
-    regression_on_page,
-    render_page,
-    settings_text,
-    table_on_page,
-    versions,
-)
+from linepose.report.made_with import settings_text, versions
+from linepose.report.page import PlatformOnPage, figures_on_page, render_page
+from linepose.report.platform_sections import platform_sections
+from linepose.report.published import published_sections
 from linepose.report.summary import summarise
 
 from .. import made_up
@@ -30,7 +25,8 @@ def page(results):
     folder = results.folder / "figures"
     index = render_figures(results, folder)
     settings = settings_text(results.platform.model_dump(mode="json"))
-    one = PlatformOnPage(summarise(results), figures_on_page(results.name, folder, index), settings)
+    one = PlatformOnPage(
+        summarise(results), platform_sections(results), figures_on_page(results.name, folder, index), settings
+    )
     study = settings_text({"data_folders": ["data", "/home/someone/private/data"], "seed": 1})
-    tables = [table_on_page("table3", made_up.pose())]
-    return render_page([one], regression_on_page(REGRESSION), tables, study, versions())
+    return render_page([one], published_sections(REGRESSION, {"table3": made_up.pose()}), study, versions())
