@@ -23,6 +23,7 @@ from linepose.rotations import Floats
 OFFSET_NAME: Final = "clock_offset_s"
 STEPS: Final = 50  # of the grid, to the largest offset on either side
 _AROUND: Final = np.array([-1, 0, 1, 2])
+_MANY: Final = 64  # rows at one node
 _SCATTER: Final = 0.05  # of the largest offset: where walkers start
 
 
@@ -75,7 +76,7 @@ class ClockOffsetLikelihood(Likelihood):
         values = np.empty(nodes.shape)
         for node in np.unique(nodes):
             row, column = np.nonzero(nodes == node)
-            values[row, column] = self._node(int(node)).log_likelihoods(rows[inside[row], :-1])
+            values[row, column] = _evaluated(self._node(int(node)), rows[inside[row], :-1])
         out = np.full(len(rows), -np.inf)
         out[inside] = _between(values, offset[inside] - below)
         return out
@@ -95,6 +96,11 @@ class ClockOffsetLikelihood(Likelihood):
         vector = np.asarray(parameters, dtype=float)
         return self._make(float(vector[-1])).residuals(vector[:-1])
 
+    def chi_square(self, parameters: ArrayLike) -> tuple[float, int]:
+        """That of the noise model with body poses at the offset that the parameters (P + 1,) hold."""
+        vector = np.asarray(parameters, dtype=float)
+        return self._make(float(vector[-1])).chi_square(vector[:-1])
+
     def mirrored(self) -> "ClockOffsetLikelihood":
         """The mirrored noise model with the offset."""
         return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).mirrored(), self.maximum_s)
@@ -103,6 +109,13 @@ class ClockOffsetLikelihood(Likelihood):
         """The same model of these observations only."""
         kept = tuple(numbers)
         return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).select(kept), self.maximum_s)
+
+
+def _evaluated(likelihood: Likelihood, rows: Floats) -> Floats:
+    """Log-likelihood of each row (K, P); few are not worth the start of threads."""
+    if len(rows) >= _MANY:
+        return likelihood.log_likelihoods(rows)
+    return np.array([likelihood.log_likelihood(row) for row in rows])
 
 
 def with_clock_offset(

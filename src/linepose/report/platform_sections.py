@@ -5,9 +5,13 @@ from typing import Final
 
 from linepose.figures.results import PlatformResults
 from linepose.report.dependence import dependence_section
+from linepose.report.noise_models import noise_models_section
 from linepose.report.sections import SectionOnPage
 
-_SECTIONS: Final[tuple[Callable[[PlatformResults], SectionOnPage | None], ...]] = (dependence_section,)
+_SECTIONS: Final[tuple[Callable[[PlatformResults], SectionOnPage | None], ...]] = (
+    noise_models_section,
+    dependence_section,
+)
 
 
 def platform_sections(results: PlatformResults) -> list[SectionOnPage]:
