@@ -14,6 +14,7 @@ from linepose.camera import Camera
 from linepose.diagnostics import diagnose_samples
 from linepose.errors import InputError
 from linepose.likelihood.models import NOISE_MODELS, likelihood_of
+from linepose.likelihood.prior import pose_prior
 from linepose.observations import (
     COVARIANCE_COLUMNS,
     EULER_COLUMNS,
@@ -30,17 +31,20 @@ from linepose.stages import diagnostics_table, optimise_stages, pose_table, samp
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
 _STAGE = "inliers"
+PRIORS = ("none", "hand_measured")
 
 
 @dataclass(frozen=True)
 class CalibrationSettings:
     """How a calibration is made; the defaults are those of config/config.yaml.
 
+    With the prior `hand_measured` the hand measurement counts as one, and is not only where the search starts.
     Observations whose mean reprojection error stays above `threshold_px` are removed, the worst first, down to
     `minimum_observations`. Every random number follows from `seed`.
     """
 
     noise_model: str = "published"
+    prior: str = "none"
     threshold_px: float = 5.0
     minimum_observations: int = 10
     search: Search = field(default_factory=Search)
@@ -64,8 +68,9 @@ def calibrate(
     observations = _checked(observations, settings)
     survey = survey_from_table(observations)
     check_determined(survey, N_PARAMETERS)
-    likelihood = likelihood_of(settings.noise_model, survey, camera)
     start = hand_measured.pose
+    prior = pose_prior(start, hand_measured.covariance) if settings.prior == "hand_measured" else None
+    likelihood = likelihood_of(settings.noise_model, survey, camera, prior)
     stages = reject_outliers(likelihood, start, settings.minimum_observations, settings.search)
     outliers = outlier_table(stages, settings.threshold_px)
     accepted = {_STAGE: stage_observations(outliers)[_STAGE]}
@@ -98,6 +103,8 @@ def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.Da
     if settings.noise_model not in NOISE_MODELS:
         known = ", ".join(NOISE_MODELS)
         raise InputError("noise_model", repr(settings.noise_model), f"one of {known}", "choose one of these")
+    if settings.prior not in PRIORS:
+        raise InputError("prior", repr(settings.prior), f"one of {', '.join(PRIORS)}", "choose one of these")
     missing = [name for name in _NEEDED if name not in observations.columns]
     if missing:
         raise InputError(
