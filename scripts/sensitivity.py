@@ -23,7 +23,8 @@ with stage(snakemake) as log:
         changes[name] = likelihood_of(platform.noise_model, nominal.survey, camera, platform.pose_prior())
     files = zip(snakemake.input.other_observations, snakemake.input.other_outliers, strict=True)
     for (name, other), (observations, outliers) in zip(snakemake.params.others.items(), files, strict=True):
-        changes[name] = read_accepted(Platform.model_validate(other), observations, outliers).accepted
+        alike = Platform.model_validate(other | {"noise_model": platform.noise_model})
+        changes[name] = read_accepted(alike, observations, outliers).accepted
     table = sensitivity(nominal, changes, platform.start_pose(), search)
     write_table(table, snakemake.output[0], SENSITIVITY)
     for _, row in table.iterrows():

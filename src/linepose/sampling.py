@@ -40,9 +40,9 @@ class IndependenceSettings:
     The rest are differential-evolution moves, which go on where the posterior is no Gaussian at all.
     """
 
-    n_walkers: int = 32
-    n_burn_in: int = 200
-    n_steps: int = 800
+    n_walkers: int = 24
+    n_burn_in: int = 160
+    n_steps: int = 640
     independent_share: float = 0.9
 
 
@@ -89,6 +89,7 @@ def sample(
         )
     random = np.random.RandomState(seed)
     centre = np.asarray(optimum, dtype=float)
+    likelihood = likelihood.around(centre)
     if isinstance(settings, IndependenceSettings):
         start, moves = _fitted_proposals(likelihood, centre, random, settings, show_progress)
     else:

@@ -21,17 +21,14 @@ def optimise_stages(
     """The optimum of each stage from the start pose (6,), with the sigmas of the Laplace approximation.
 
     Columns as in `result_schemas.OPTIMA`, and the noise model's own parameters and their sigmas. The reduced
-    chi-square is the sum of the residuals' squares in sigmas over the number of reprojected points less six: near one
-    where the sigmas are right.
+    chi-square is the noise model's chi-square over its degrees of freedom: near one where the sigmas are right.
     """
     rows = []
     for name, numbers in stages.items():
         selected = likelihood.select(numbers)
         optimum = optimise(selected, start, search)
         sigma = np.sqrt(np.diag(laplace_covariance(selected, optimum.parameters)))
-        residuals = selected.residuals(optimum.parameters)
-        normalised = residuals.error_px / residuals.sigma_px
-        freedom = int(np.isfinite(normalised).sum()) - N_PARAMETERS
+        chi_square, freedom = selected.chi_square(optimum.parameters)
         rows.append(
             {
                 "stage": name,
@@ -40,7 +37,7 @@ def optimise_stages(
                 **dict(zip(laplace_sigma_columns(likelihood.parameter_names), sigma, strict=True)),
                 "neg_log_likelihood": optimum.neg_log_likelihood,
                 "start_neg_log_likelihood": -selected.log_likelihood(likelihood.start(start)),
-                "reduced_chi_square": float(np.nansum(normalised**2)) / max(freedom, 1),
+                "reduced_chi_square": chi_square / freedom,
                 "n_evaluations": optimum.n_evaluations,
                 "degrees_of_freedom": freedom,
                 "converged": optimum.converged,

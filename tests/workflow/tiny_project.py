@@ -54,18 +54,24 @@ class Project:
         for name, values in platforms.items():
             (config / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(dict(values)))
 
-    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
+    def start(self, *arguments: str, cores: int = 2) -> subprocess.Popen[str]:
+        """The workflow, begun in a session of its own, so that all its processes can be killed at once."""
         command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]
         path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
-        return subprocess.run(
+        return subprocess.Popen(
             [*command, *arguments],
             cwd=self.folder,
             env=os.environ | {"PYTHONPATH": path},
-            capture_output=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             text=True,
-            timeout=600,
-            check=False,
+            start_new_session=True,
         )
+
+    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
+        started = self.start(*arguments, cores=cores)
+        output, error = started.communicate(timeout=600)
+        return subprocess.CompletedProcess(started.args, started.returncode, output, error)
 
     def results(self) -> dict[str, bytes]:
         """Every Parquet result by its path."""

@@ -5,7 +5,7 @@ rule clock_offset:
         outliers="results/{platform}/outliers.parquet",
         optima="results/{platform}/optima.parquet",
         samples="results/{platform}/mcmc",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         table="results/{platform}/clock_offset.parquet",
         samples="results/{platform}/clock_offset_samples.parquet",

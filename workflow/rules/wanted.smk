@@ -72,6 +72,7 @@ def drawn_from(wildcards):
         "identifiability": experiments.noise_models,
         "consistency": experiments.noise_models,
         "consistency_summary": experiments.noise_models,
+        "detected_points": wildcards.platform in PROJECT.simulated,
     }
     return [
         f"results/{wildcards.platform}/{key}.parquet"

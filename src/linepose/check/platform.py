@@ -17,7 +17,14 @@ from linepose.check.motion import motion_findings
 from linepose.check.prediction import predict
 from linepose.check.scans import scan_findings
 from linepose.check.views import view_findings
-from linepose.config.platform import LabelledViewsSection, Platform, ScansSection, platform_faults, read_yaml
+from linepose.config.platform import (
+    LabelledViewsSection,
+    Platform,
+    ScansSection,
+    load_platform,
+    platform_faults,
+    read_yaml,
+)
 from linepose.config.project import Project
 from linepose.config.study import check_study
 from linepose.csv_files import read_numbers
@@ -53,15 +60,16 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
     findings = configuration_findings(platform, root)
     if any(finding.level == Level.ERROR for finding in findings):
         return CheckReport(platform, tuple(findings))
+    study = check_study(read_yaml(root / CONFIG) | {"platforms": [platform]})
+    settings = load_platform(root / study.platforms_folder, platform)
+    findings += camera_findings(settings.intrinsics())
     try:
         loaded = load_platform_project(platform, root, lambda _: False)
     except InputError as fault:
         return CheckReport(platform, (*findings, of_fault("data set", fault)))
-    settings = loaded.platforms[platform]
-    findings += camera_findings(settings.intrinsics())
     more, observations = recorded_findings(loaded, platform, root)
     findings += more
-    if observations is None:
+    if observations is None or any(finding.level == Level.ERROR for finding in findings):
         return CheckReport(platform, tuple(findings))
     more, sigmas = geometry_findings(settings, observations)
     return CheckReport(platform, (*findings, *more), sigmas)

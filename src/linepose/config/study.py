@@ -63,9 +63,9 @@ class SamplingSection(Section):
 class IndependenceSamplingSection(Section):
     """Sampling where the noise model infers its levels: proposals from the fitted posterior."""
 
-    n_walkers: int = Field(32, ge=22, description="Walkers of the ensemble, two a parameter or more.")
-    n_burn_in: int = Field(200, ge=20, description="Steps that fit the proposals, thrown away.")
-    n_steps: int = Field(800, ge=4, description="Steps kept.")
+    n_walkers: int = Field(24, ge=22, description="Walkers of the ensemble, two a parameter or more.")
+    n_burn_in: int = Field(160, ge=20, description="Steps that fit the proposals, thrown away.")
+    n_steps: int = Field(640, ge=4, description="Steps kept.")
     independent_share: float = Field(
         0.9, gt=0, lt=1, description="Share of proposals from the fit; the rest are differential evolution."
     )

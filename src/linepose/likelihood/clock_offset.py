@@ -102,6 +102,11 @@ class ClockOffsetLikelihood(Likelihood):
         vector = np.asarray(parameters, dtype=float)
         return self._make(float(vector[-1])).residuals(vector[:-1])
 
+    def chi_square(self, parameters: ArrayLike) -> tuple[float, int]:
+        """That of the noise model with body poses at the offset that the parameters (P + 1,) hold."""
+        vector = np.asarray(parameters, dtype=float)
+        return self._make(float(vector[-1])).chi_square(vector[:-1])
+
     def mirrored(self) -> "ClockOffsetLikelihood":
         """The mirrored noise model with the offset."""
         return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).mirrored(), self.maximum_s)

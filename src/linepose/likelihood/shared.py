@@ -150,6 +150,14 @@ class SharedLikelihood(Likelihood):
         point_covariance[self._points] = self._point_covariance(fit)
         return Residuals(error, sigma, error_uv, points, point_covariance)
 
+    def chi_square(self, parameters: ArrayLike) -> tuple[float, int]:
+        """Chi squared under the whole covariances of the views, and its degrees of freedom: two a line, less the
+        coordinates of the points and the pose.
+        """
+        found = self._fit(self._vector(parameters)).marginal
+        freedom = 2 * len(self._arrays.u_px) - 3 * len(self._points) - len(POSE_COLUMNS)
+        return float(found.chi_squared), max(freedom, 1)
+
     def shared_errors(self, parameters: ArrayLike) -> Floats:
         """Navigation error (N, 6) that each view's points share: north, east, down (m), roll, pitch, yaw (rad).
 
