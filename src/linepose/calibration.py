@@ -47,6 +47,7 @@ from linepose.stages import (
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
 _STAGE = "inliers"
+PRIORS = ("none", "hand_measured")
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,8 @@ def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.Da
     if settings.noise_model not in NOISE_MODELS:
         known = ", ".join(NOISE_MODELS)
         raise InputError("noise_model", repr(settings.noise_model), f"one of {known}", "choose one of these")
+    if settings.prior not in PRIORS:
+        raise InputError("prior", repr(settings.prior), f"one of {', '.join(PRIORS)}", "choose one of these")
     missing = [name for name in _NEEDED if name not in observations.columns]
     if missing:
         raise InputError(
