@@ -5,6 +5,7 @@ same to the last bit.
 """
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -14,6 +15,7 @@ from linepose.camera import Camera
 from linepose.diagnostics import diagnose_samples
 from linepose.errors import InputError
 from linepose.likelihood.models import NOISE_MODELS, likelihood_of
+from linepose.likelihood.names import PUBLISHED
 from linepose.likelihood.prior import pose_prior
 from linepose.observations import (
     COVARIANCE_COLUMNS,
@@ -26,8 +28,22 @@ from linepose.optimise import Search
 from linepose.outliers import outlier_table, reject_outliers, stage_observations
 from linepose.pose import N_PARAMETERS
 from linepose.residual_tables import residual_tables
-from linepose.sampling import SamplingSettings, sample, stage_seed
-from linepose.stages import diagnostics_table, optimise_stages, pose_table, sample_table
+from linepose.sampling import (
+    IndependenceSettings,
+    SamplingSettings,
+    default_settings,
+    sample,
+    section_of,
+    stage_seed,
+)
+from linepose.stages import (
+    diagnostics_table,
+    estimated_parameters,
+    optimise_stages,
+    pose_table,
+    sample_table,
+    samples_from_table,
+)
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
 _STAGE = "inliers"
@@ -38,17 +54,17 @@ PRIORS = ("none", "hand_measured")
 class CalibrationSettings:
     """How a calibration is made; the defaults are those of config/config.yaml.
 
-    With the prior `hand_measured` the hand measurement counts as one, and is not only where the search starts.
     Observations whose mean reprojection error stays above `threshold_px` are removed, the worst first, down to
-    `minimum_observations`. Every random number follows from `seed`.
+    `minimum_observations`. With `prior` "hand_measured" the hand measurement is a Gaussian prior of the pose, not only
+    the start. `sampling` is that of the noise model where it is None. Every random number follows from `seed`.
     """
 
-    noise_model: str = "published"
-    prior: str = "none"
+    noise_model: str = PUBLISHED
+    prior: Literal["none", "hand_measured"] = "none"
     threshold_px: float = 5.0
     minimum_observations: int = 10
     search: Search = field(default_factory=Search)
-    sampling: SamplingSettings = field(default_factory=SamplingSettings)
+    sampling: SamplingSettings | IndependenceSettings | None = None
     seed: int = 2017
 
 
@@ -68,8 +84,8 @@ def calibrate(
     observations = _checked(observations, settings)
     survey = survey_from_table(observations)
     check_determined(survey, N_PARAMETERS)
-    start = hand_measured.pose
-    prior = pose_prior(start, hand_measured.covariance) if settings.prior == "hand_measured" else None
+    start, hand_covariance = hand_measured.pose, hand_measured.covariance
+    prior = pose_prior(start, hand_covariance) if settings.prior == "hand_measured" else None
     likelihood = likelihood_of(settings.noise_model, survey, camera, prior)
     stages = reject_outliers(likelihood, start, settings.minimum_observations, settings.search)
     outliers = outlier_table(stages, settings.threshold_px)
@@ -78,21 +94,23 @@ def calibrate(
     names = likelihood.parameter_names
     optimum = optima.loc[0, list(names)].to_numpy(dtype=float, copy=True)
     seed = stage_seed(settings.seed, len(accepted[_STAGE]))
-    chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, settings.sampling)
-    diagnostics = diagnose_samples(np.ascontiguousarray(chain.parameters[..., :N_PARAMETERS]))
+    sampling = settings.sampling or default_settings(settings.noise_model)
+    chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, sampling)
+    samples = sample_table(chain, names)
+    diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)), section_of(sampling))
     residuals, points = residual_tables(likelihood, accepted, {_STAGE: optimum})
-    hand_sigma = np.sqrt(np.diag(hand_measured.covariance))
     return Calibration(
         pose=optimum[:N_PARAMETERS],
         covariance=chain.covariance()[:N_PARAMETERS, :N_PARAMETERS],
         hand_measured=hand_measured,
         threshold_px=settings.threshold_px,
+        noise_model=settings.noise_model,
         observations=observations,
         outlier_removal=outliers,
         optima=optima,
-        samples=sample_table(chain, names),
+        samples=samples,
         diagnostics=diagnostics_table(optima, {_STAGE: diagnostics}),
-        poses=pose_table(optima, {_STAGE: diagnostics.sigma}, start, hand_sigma),
+        poses=pose_table(optima, {_STAGE: diagnostics.sigma}, start, np.sqrt(np.diag(hand_covariance))),
         residuals=residuals,
         points=points,
     )

@@ -116,7 +116,6 @@ def climb(likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, searc
 
 
 def _climb(likelihood: Likelihood, first: Floats, centre: Floats, half_width: Floats) -> Optimum:
-    likelihood = likelihood.around(first)
     origin = np.arcsin(np.clip((first - centre) / half_width, -1.0, 1.0))
     unit = _UNIT * likelihood.half_widths(_UNIT_M, _UNIT_RAD) / half_width
     moves = _DIFFERENCE * np.vstack([np.eye(len(unit)), -np.eye(len(unit))])

@@ -10,7 +10,6 @@ def label(name: Name, project: ProjectFolder = HERE) -> None:
     from linepose.api import recorded_folder
     from linepose.config.platform import ScansSection
     from linepose.errors import InputError
-    from linepose.labelling import label_platform
     from linepose.project_folder import find_project, load_platform_project
 
     root = find_project(project)
@@ -19,5 +18,7 @@ def label(name: Name, project: ProjectFolder = HERE) -> None:
     if not isinstance(source, ScansSection):
         remedy = "label scans: set source.kind: scans"
         raise InputError(f"{name}: source.kind", source.kind, "scans, which have images", remedy)
+    from linepose.labelling import label_platform
+
     label_platform(recorded_folder(loaded, name, root), source)
     typer.echo(f"next: linepose check {name}")

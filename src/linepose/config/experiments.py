@@ -118,6 +118,9 @@ class NoiseModelsSection(Section):
         "passes; they are run as far as the outlier removal.",
     )
     n_splits: NonNegativeInt = Field(200, description="Random splits of each platform's accepted observations.")
+    robust_steps: int = Field(
+        400, ge=4, description="Steps kept of the robust model's chains, ten times as dear as the shared model's."
+    )
     batch_size: PositiveInt = Field(20, description="Splits between two savings; no result depends on it.")
 
 

@@ -8,7 +8,7 @@ from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
-from linepose.likelihood.names import PUBLISHED
+from linepose.likelihood.names import sampling_section
 from linepose.optimise import Search
 from linepose.sampling import IndependenceSettings, SamplingSettings
 
@@ -65,7 +65,7 @@ class IndependenceSamplingSection(Section):
 
     n_walkers: int = Field(24, ge=22, description="Walkers of the ensemble, two a parameter or more.")
     n_burn_in: int = Field(160, ge=20, description="Steps that fit the proposals, thrown away.")
-    n_steps: int = Field(640, ge=4, description="Steps kept.")
+    n_steps: int = Field(1000, ge=4, description="Steps kept.")
     independent_share: float = Field(
         0.9, gt=0, lt=1, description="Share of proposals from the fit; the rest are differential evolution."
     )
@@ -101,7 +101,9 @@ class Study(Section):
 
     def sampling_of(self, noise_model: str) -> SamplingSection | IndependenceSamplingSection:
         """The sampling section for a noise model."""
-        return self.sampling if noise_model == PUBLISHED else self.independence_sampling
+        section = getattr(self, sampling_section(noise_model))
+        assert isinstance(section, SamplingSection | IndependenceSamplingSection)
+        return section
 
 
 def load_dataset(path: Path) -> DatasetSection:

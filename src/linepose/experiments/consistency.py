@@ -55,7 +55,8 @@ class Comparisons:
         """All the work in parts that do not depend on each other, by a name that is a file's."""
         work: dict[str, Callable[[], pd.DataFrame]] = {}
         for noise_model, groups in self.groups.items():
-            work[f"{noise_model}-pairs"] = partial(self.pairs, noise_model)
+            if len(groups) > 1 or self.subsets:
+                work[f"{noise_model}-pairs"] = partial(self.pairs, noise_model)
             for name in groups:
                 for place, indices in batch_ranges(n_splits, batch_size).items():
                     work[f"{noise_model}-{name}-{place}"] = partial(self.random_halves, noise_model, name, indices)

@@ -32,6 +32,10 @@ class Results(Protocol):
     def threshold_px(self) -> float:
         """Mean error (px) below which an observation is accepted."""
 
+    @property
+    def noise_model(self) -> str:
+        """Name of the noise model."""
+
     def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
         """A result by its name."""
 
@@ -127,6 +131,7 @@ def gather_evidence(results: Results, numbers: list[PoseNumber]) -> Evidence:
         influence=influence,
         truth_sigmas=None if wrong.error_sigmas is None else abs(wrong.error_sigmas),
         truth_parameter=wrong.name,
+        noise_model=results.noise_model,
     )
 
 

@@ -121,6 +121,14 @@ def millimetres(root):
     change_platform(root, lambda p: p["camera"].update(focal_length_m=8.2))
 
 
+def roll_sign(root):
+    change_views(root, lambda t: t.__setitem__("roll", -t["roll"]))
+
+
+def flipped_line(root):
+    change_views(root, lambda t: t.__setitem__("u_px", 647 - t["u_px"]))
+
+
 def from_east(root):
     change_views(root, lambda t: t.__setitem__("yaw", np.pi / 2 - t["yaw"]))
 
@@ -149,6 +157,8 @@ PLANTED = {
     far_off: (Level.WARNING, "hand measurement", "its sigmas explain", "zyx intrinsic"),
     millimetres: (Level.ERROR, "camera", "8.2 m", "metres"),
     from_east: (Level.WARNING, "body pose", "off its heading", "east, north, up"),
+    roll_sign: (Level.ERROR, "conventions", "roll has the other sign", "right side goes down"),
+    flipped_line: (Level.ERROR, "conventions", "scan line is flipped|counted from the other end", "n_pixels - 1 - u|"),
     no_covariances: (Level.ERROR, "covariances", "no such file", "restore it"),
     no_folder: (Level.ERROR, "data set", "no folder mine", "put them in"),
 }

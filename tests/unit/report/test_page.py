@@ -141,6 +141,13 @@ def test_published_numbers_are_grouped_with_their_outcome():
     assert [row[-1] for row in single.rows] == ["✓ passed", "✓ passed"]
 
 
+def test_notes_of_numbers_that_passed_stand_once_above_their_table():
+    noted = REGRESSION.assign(note=["simulated", "printed wrongly", "", "simulated", "simulated"])
+    _, made_up_section, other = published_sections(noted, {})
+    assert made_up_section.tables[0].sentence.endswith("1 known to deviate. Simulated.")
+    assert other.tables[0].sentence == "2 of 2 reproduced within the tolerance. Simulated."
+
+
 def test_where_everything_is_reproduced_nothing_differs():
     titles = [section.title for section in published_sections(REGRESSION[REGRESSION["passed"]], {})]
     assert titles == ["made-up", "other"]
