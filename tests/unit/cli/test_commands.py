@@ -223,8 +223,8 @@ def test_show_tells_pose_verdict_and_where_files_are(finished):
     result = given("show", "mine")
     assert result.exit_code == 0, result.output
     lines = result.stdout.splitlines()
-    for name, value in zip(("forward, r_x", "right, r_y", "down, r_z"), made_up.OPTIMUM[:3], strict=True):
-        (line,) = [line for line in lines if line.startswith(name)]
+    for name, value in zip(("r_x", "r_y", "r_z"), made_up.OPTIMUM[:3], strict=True):
+        (line,) = [line for line in lines if line.startswith(f"{name} ")]
         assert f"{value:.4f} m" in line
     assert any(line.startswith("roll") and "deg" in line for line in lines)
     assert any("4 of 6 observations accepted" in line for line in lines)
