@@ -1,7 +1,6 @@
 """Every figure: its name, what it shows in words, how it is drawn from a platform's results, and its caption."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import pandas as pd
@@ -23,24 +22,10 @@ from linepose.figures import (
     trace,
     uncertainty,
 )
+from linepose.figures.entry import CatalogueEntry, without
+from linepose.figures.noise_catalogue import NOISE_FIGURES
 from linepose.figures.results import PlatformResults
-from linepose.figures.scan_example import scan_example
-
-
-@dataclass(frozen=True)
-class CatalogueEntry:
-    """One figure: file stem, title, the paper's figure or nothing, what it shows, and how it is made.
-
-    `left_out` says in a sentence why a platform has none of it, and is empty where it should have one.
-    """
-
-    name: str
-    title: str
-    paper_figure: str
-    shows: str
-    draw: Callable[[PlatformResults], Figure]
-    caption: Callable[[PlatformResults], str]
-    left_out: Callable[[Platform], str] = lambda _: ""
+from linepose.figures.scan_example import scan_examples
 
 
 def _mapping(r: PlatformResults) -> Figure:
@@ -101,31 +86,6 @@ def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
     return lambda r: residuals.residuals_caption(r.table("residuals", result_schemas.RESIDUALS), by)
 
 
-def _stacked_scan(r: PlatformResults) -> Figure:
-    example = scan_example(r)
-    return scan.stacked_scan(example.intensity, example.points)
-
-
-def _stacked_scan_caption(r: PlatformResults) -> str:
-    example = scan_example(r)
-    return scan.stacked_scan_caption(example.intensity, example.observation)
-
-
-def _labelled_points(r: PlatformResults) -> Figure:
-    example = scan_example(r)
-    return scan.labelled_points(example.intensity, example.points)
-
-
-def _labelled_points_caption(r: PlatformResults) -> str:
-    example = scan_example(r)
-    return scan.labelled_points_caption(example.points, example.observation)
-
-
-def _without(key: str) -> Callable[[Platform], str]:
-    told = f"This experiment was not asked for: experiments.{key} is null in the platform's file."
-    return lambda platform: "" if getattr(platform.experiments, key) else told
-
-
 def _without_splits(platform: Platform) -> str:
     settings = platform.experiments.repeatability
     told = "This experiment was not asked for: experiments.repeatability has no splits in the platform's file."
@@ -140,6 +100,11 @@ def _without_scans(platform: Platform) -> str:
     kind = platform.source.kind
     told = "This platform has no scans: its points were labelled before they came here."
     return told if kind == "labelled_views" else ""
+
+
+def _without_truth(platform: Platform) -> str:
+    told = "Detection is tried beside the labels only where the truth is known: in simulated platforms."
+    return "" if platform.simulation else told
 
 
 FIGURES: Final = (
@@ -157,19 +122,28 @@ FIGURES: Final = (
         "stacked_scan",
         "Stacked scan",
         "Figure 6",
-        "grey image of one observation's scan lines with the pattern framed",
-        _stacked_scan,
-        _stacked_scan_caption,
+        "grey images of a few observations' scan lines with the pattern's sheet framed",
+        lambda r: scan.stacked_scan(scan_examples(r, "points")),
+        lambda r: scan.stacked_scan_caption(scan_examples(r, "points")),
         _without_scans,
     ),
     CatalogueEntry(
         "labelled_points",
         "Points found in the scan",
         "Figure 7",
-        "close-up of the pattern in a scan, each point crossed and numbered",
-        _labelled_points,
-        _labelled_points_caption,
+        "close-ups of the pattern in scans, each point crossed and numbered",
+        lambda r: scan.points_in_scan(scan_examples(r, "points")),
+        lambda r: scan.labelled_points_caption(scan_examples(r, "points")),
         _without_scans,
+    ),
+    CatalogueEntry(
+        "detected_points",
+        "Points detected without labels",
+        "",
+        "close-ups of the pattern in scans, each detected point crossed and numbered",
+        lambda r: scan.points_in_scan(scan_examples(r, "detected_points")),
+        lambda r: scan.detected_points_caption(scan_examples(r, "detected_points")),
+        _without_truth,
     ),
     CatalogueEntry(
         "outliers",
@@ -221,7 +195,7 @@ FIGURES: Final = (
         lambda r: mapping.mapping_caption(
             r.table("mapping_summary", experiment_schemas.MAPPING_SUMMARY), r.accepted()[0]
         ),
-        _without("mapping"),
+        without("mapping"),
     ),
     CatalogueEntry(
         "angle_error",
@@ -232,7 +206,7 @@ FIGURES: Final = (
         lambda r: mapping.angle_error_caption(
             r.table("mapping_summary", experiment_schemas.MAPPING_SUMMARY), _angle_deg(r)
         ),
-        _without("mapping"),
+        without("mapping"),
     ),
     CatalogueEntry(
         "basin",
@@ -241,7 +215,7 @@ FIGURES: Final = (
         "grid of starts over distance and angle, coloured by whether the search found the optimum",
         _basin,
         _basin_caption,
-        _without("basin"),
+        without("basin"),
     ),
     CatalogueEntry(
         "trace",
@@ -284,4 +258,5 @@ FIGURES: Final = (
         lambda r: repeatability.repeatability_caption(r.table("splits", experiment_schemas.SPLITS), _named_pair(r)),
         _without_splits,
     ),
+    *NOISE_FIGURES,
 )

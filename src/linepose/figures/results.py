@@ -29,6 +29,11 @@ class PlatformResults:
     _read: dict[str, pd.DataFrame] = field(default_factory=dict)
 
     @property
+    def noise_model(self) -> str:
+        """Name of the platform's noise model."""
+        return self.platform.noise_model
+
+    @property
     def true_pose(self) -> Floats | None:
         """The true pose (6,) of a simulated platform."""
         simulation = self.platform.simulation

@@ -1,6 +1,7 @@
 """What the report says of one platform, gathered from its results."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import pandas as pd
@@ -22,6 +23,33 @@ from linepose.report.pose_tables import (
 from linepose.report.verdict import Evidence, Verdict, judge
 from linepose.residual_tables import alike_in_a_view
 from linepose.rotations import Floats
+
+
+class Results(Protocol):
+    """The results of one platform, from files or from memory, as the verdict asks for them."""
+
+    @property
+    def threshold_px(self) -> float:
+        """Mean error (px) below which an observation is accepted."""
+
+    @property
+    def noise_model(self) -> str:
+        """Name of the noise model."""
+
+    def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
+        """A result by its name."""
+
+    def has(self, name: str) -> bool:
+        """Whether this result was made."""
+
+    def survey(self) -> Survey:
+        """All observations."""
+
+    def accepted(self) -> list[int]:
+        """Numbers of the accepted observations."""
+
+    def samples(self) -> pd.DataFrame:
+        """The chain of the accepted observations."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +97,7 @@ def summarise(results: PlatformResults) -> PlatformSummary:
     )
 
 
-def gather_evidence(results: PlatformResults, numbers: list[PoseNumber]) -> Evidence:
+def gather_evidence(results: Results, numbers: list[PoseNumber]) -> Evidence:
     """The numbers that the verdict rests on; `numbers` are the pose's six."""
     optimum = _accepted_stage(results, "optima", result_schemas.OPTIMA).iloc[0]
     chain = _accepted_stage(results, "diagnostics", result_schemas.DIAGNOSTICS)
@@ -101,11 +129,12 @@ def gather_evidence(results: PlatformResults, numbers: list[PoseNumber]) -> Evid
         influence=influence,
         truth_sigmas=None if wrong.error_sigmas is None else abs(wrong.error_sigmas),
         truth_parameter=wrong.name,
+        noise_model=results.noise_model,
     )
 
 
-def _accepted_stage(results: PlatformResults, name: str, schema: pa.Schema) -> pd.DataFrame:
-    return stage_rows(results.table(name, schema), "inliers", [], f"{results.name}/{name}.parquet")
+def _accepted_stage(results: Results, name: str, schema: pa.Schema) -> pd.DataFrame:
+    return stage_rows(results.table(name, schema), "inliers", [], f"{name}.parquet")
 
 
 def tilt_spread_deg(survey: Survey) -> float:
@@ -114,14 +143,14 @@ def tilt_spread_deg(survey: Survey) -> float:
     return float(np.sqrt(np.mean(np.sum((tilt - tilt.mean(axis=0)) ** 2, axis=1))))
 
 
-def _sigma_factor(results: PlatformResults) -> float | None:
+def _sigma_factor(results: Results) -> float | None:
     if not results.has("splits"):
         return None
     splits = results.table("splits", experiment_schemas.SPLITS)
     return sigma_factor(splits) if splits["mahalanobis"].notna().any() else None
 
 
-def _influence(results: PlatformResults) -> tuple[int | None, float | None]:
+def _influence(results: Results) -> tuple[int | None, float | None]:
     if not results.has("leave_one_out"):
         return None, None
     table = results.table("leave_one_out", experiment_schemas.LEAVE_ONE_OUT)
