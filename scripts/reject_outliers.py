@@ -14,7 +14,7 @@ with stage(snakemake) as log:
     platform = Platform.model_validate(snakemake.params.platform)
     outliers = OutliersSection.model_validate(snakemake.params.outliers)
     search = SearchSection.model_validate(snakemake.params.search).settings()
-    survey = survey_from_table(read_table(snakemake.input[0], OBSERVATIONS))
+    survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
     likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
     stages = reject_outliers(likelihood, platform.start_pose(), outliers.minimum_observations, search)
     table = outlier_table(stages, outliers.threshold_px)

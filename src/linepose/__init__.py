@@ -19,6 +19,7 @@ _HOMES = {
     "observations_from_arrays": "api",
     "check_platform": "check.platform",
     "SamplingSettings": "sampling",
+    "IndependenceSettings": "sampling",
     "Search": "optimise",
     "LineposeError": "errors",
     "InputError": "errors",

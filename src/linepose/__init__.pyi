@@ -13,4 +13,5 @@ from linepose.errors import EstimationError as EstimationError
 from linepose.errors import InputError as InputError
 from linepose.errors import LineposeError as LineposeError
 from linepose.optimise import Search as Search
+from linepose.sampling import IndependenceSettings as IndependenceSettings
 from linepose.sampling import SamplingSettings as SamplingSettings

@@ -125,6 +125,7 @@ def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
         HandMeasured(hand.position_m, hand.euler_deg, hand.sigma_position_m, hand.sigma_euler_deg),
         CalibrationSettings(
             noise_model=settings.noise_model,
+            prior=settings.prior,
             threshold_px=study.outliers.threshold_px,
             minimum_observations=study.outliers.minimum_observations,
             search=study.search.settings(),

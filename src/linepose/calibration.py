@@ -5,6 +5,7 @@ same to the last bit.
 """
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -14,6 +15,8 @@ from linepose.camera import Camera
 from linepose.diagnostics import diagnose_samples
 from linepose.errors import InputError
 from linepose.likelihood.models import NOISE_MODELS, likelihood_of
+from linepose.likelihood.names import PUBLISHED
+from linepose.likelihood.prior import pose_prior
 from linepose.observations import (
     COVARIANCE_COLUMNS,
     EULER_COLUMNS,
@@ -33,10 +36,18 @@ from linepose.sampling import (
     section_of,
     stage_seed,
 )
-from linepose.stages import diagnostics_table, optimise_stages, pose_table, sample_table
+from linepose.stages import (
+    diagnostics_table,
+    estimated_parameters,
+    optimise_stages,
+    pose_table,
+    sample_table,
+    samples_from_table,
+)
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
 _STAGE = "inliers"
+PRIORS = ("none", "hand_measured")
 
 
 @dataclass(frozen=True)
@@ -44,10 +55,12 @@ class CalibrationSettings:
     """How a calibration is made; the defaults are those of config/config.yaml.
 
     Observations whose mean reprojection error stays above `threshold_px` are removed, the worst first, down to
-    `minimum_observations`. Without `sampling` it is the noise model's default. Every random number follows from `seed`.
+    `minimum_observations`. With `prior` "hand_measured" the hand measurement is a Gaussian prior of the pose, not only
+    the start. `sampling` is that of the noise model where it is None. Every random number follows from `seed`.
     """
 
-    noise_model: str = "published"
+    noise_model: str = PUBLISHED
+    prior: Literal["none", "hand_measured"] = "none"
     threshold_px: float = 5.0
     minimum_observations: int = 10
     search: Search = field(default_factory=Search)
@@ -71,8 +84,9 @@ def calibrate(
     observations = _checked(observations, settings)
     survey = survey_from_table(observations)
     check_determined(survey, N_PARAMETERS)
-    likelihood = likelihood_of(settings.noise_model, survey, camera)
-    start = hand_measured.pose
+    start, hand_covariance = hand_measured.pose, hand_measured.covariance
+    prior = pose_prior(start, hand_covariance) if settings.prior == "hand_measured" else None
+    likelihood = likelihood_of(settings.noise_model, survey, camera, prior)
     stages = reject_outliers(likelihood, start, settings.minimum_observations, settings.search)
     outliers = outlier_table(stages, settings.threshold_px)
     accepted = {_STAGE: stage_observations(outliers)[_STAGE]}
@@ -82,9 +96,9 @@ def calibrate(
     seed = stage_seed(settings.seed, len(accepted[_STAGE]))
     sampling = settings.sampling or default_settings(settings.noise_model)
     chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, sampling)
-    diagnostics = diagnose_samples(np.ascontiguousarray(chain.parameters), section_of(sampling))
+    samples = sample_table(chain, names)
+    diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)), section_of(sampling))
     residuals, points = residual_tables(likelihood, accepted, {_STAGE: optimum})
-    hand_sigma = np.sqrt(np.diag(hand_measured.covariance))
     return Calibration(
         pose=optimum[:N_PARAMETERS],
         covariance=chain.covariance()[:N_PARAMETERS, :N_PARAMETERS],
@@ -94,9 +108,9 @@ def calibrate(
         observations=observations,
         outlier_removal=outliers,
         optima=optima,
-        samples=sample_table(chain, names),
+        samples=samples,
         diagnostics=diagnostics_table(optima, {_STAGE: diagnostics}),
-        poses=pose_table(optima, {_STAGE: diagnostics.sigma}, start, hand_sigma),
+        poses=pose_table(optima, {_STAGE: diagnostics.sigma}, start, np.sqrt(np.diag(hand_covariance))),
         residuals=residuals,
         points=points,
     )
@@ -107,6 +121,8 @@ def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.Da
     if settings.noise_model not in NOISE_MODELS:
         known = ", ".join(NOISE_MODELS)
         raise InputError("noise_model", repr(settings.noise_model), f"one of {known}", "choose one of these")
+    if settings.prior not in PRIORS:
+        raise InputError("prior", repr(settings.prior), f"one of {', '.join(PRIORS)}", "choose one of these")
     missing = [name for name in _NEEDED if name not in observations.columns]
     if missing:
         raise InputError(

@@ -140,8 +140,8 @@ CLOCK_OFFSET: Final = pa.schema(
     [
         *whole_numbers("n_observations"),
         *texts("observations"),
-        *floats("offset_s", "sigma_s"),
-        *_optional("laplace_sigma_s"),
+        *floats("offset_s", "sigma_s", "sampled_sigma_s"),
+        *_optional("laplace_sigma_s", "jackknife_sigma_s"),
         *floats("maximum_s", "shrinkage", "correlation_pose", *CORRELATION_COLUMNS),
         *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
         *floats(*(f"{name}_without" for name in (*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood")), "mahalanobis"),

@@ -45,7 +45,7 @@ class Motion:
         seconds = (time_us - self.start_us) / 1e6
         before, after = self.path(seconds), self.path(seconds + offset_s)
         first, second = (Rotation.from_rotvec(at[:, 3:]).as_matrix() for at in (before, after))
-        return position_m + after[:, :3] - before[:, :3], rotation @ np.swapaxes(first, -1, -2) @ second
+        return position_m + (after[:, :3] - before[:, :3]), rotation @ np.swapaxes(first, -1, -2) @ second
 
 
 def motion(log: NavigationLog, time_us: NDArray[np.int64], reach_s: float) -> Motion:

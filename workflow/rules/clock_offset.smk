@@ -5,7 +5,7 @@ rule clock_offset:
         outliers="results/{platform}/outliers.parquet",
         optima="results/{platform}/optima.parquet",
         samples="results/{platform}/mcmc",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         table="results/{platform}/clock_offset.parquet",
         samples="results/{platform}/clock_offset_samples.parquet",
@@ -19,11 +19,11 @@ rule clock_offset:
         clock_offset=experiment("clock_offset"),
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
         search=section("search"),
-        sampling=section("sampling"),
+        sampling=sampling,
         seed=STUDY.seed,
         code=[
             source_digest("linepose.experiments.clock_offset"),
-            source_digest("linepose.navigation_motion"),
+            source_digest("linepose.recorded"),
             source_digest("linepose.experiments.accepted"),
             source_digest("linepose.likelihood.models"),
         ],

@@ -1,5 +1,6 @@
 import os
 from pathlib import Path
+from typing import get_args
 
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
@@ -7,6 +8,7 @@ from snakemake.logging import logger
 from linepose.config.project import load_project
 from linepose.datasets import can_be_reached
 from linepose.errors import LineposeError
+from linepose.likelihood.names import NoiseModelName
 from linepose.provenance import files_digest, source_digest
 from linepose.storage import read_table
 
@@ -33,6 +35,7 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
+NOISE_MODELS = get_args(NoiseModelName)
 PLATFORMS = [name for name in STUDY.platforms if name in PROJECT.platforms]
 
 
@@ -60,6 +63,11 @@ def readable(wildcards):
     if wildcards.platform in PROJECT.simulated:
         return []
     return f"results/logs/{wildcards.platform}/check_readable.passed"
+
+
+def compiled(wildcards):
+    """The compiled kernel of the platform's noise model; the others may still be in the making."""
+    return f"results/compiled/{PROJECT.platforms[wildcards.platform].noise_model}.txt"
 
 
 def platform_file(wildcards):

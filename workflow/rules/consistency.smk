@@ -5,7 +5,7 @@ rule consistency:
         other_observations=of_others("noise_models", "observations"),
         other_outliers=of_others("noise_models", "outliers"),
         estimates="results/{platform}/noise_models.parquet",
-        compiled="results/compiled.txt",
+        compiled=expand("results/compiled/{noise_model}.txt", noise_model=NOISE_MODELS),
     output:
         splits="results/{platform}/consistency.parquet",
         summary="results/{platform}/consistency_summary.parquet",

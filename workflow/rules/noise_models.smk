@@ -4,7 +4,7 @@ rule noise_models:
         outliers="results/{platform}/outliers.parquet",
         other_observations=of_others("noise_models", "observations"),
         other_outliers=of_others("noise_models", "outliers"),
-        compiled="results/compiled.txt",
+        compiled=expand("results/compiled/{noise_model}.txt", noise_model=NOISE_MODELS),
     output:
         estimates="results/{platform}/noise_models.parquet",
         identifiability="results/{platform}/identifiability.parquet",

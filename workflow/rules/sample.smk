@@ -3,7 +3,7 @@ rule sample:
         observations="results/{platform}/observations.parquet",
         outliers="results/{platform}/outliers.parquet",
         optima="results/{platform}/optima.parquet",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         directory("results/{platform}/mcmc"),
     log:

@@ -4,7 +4,7 @@ rule sensitivity:
         outliers="results/{platform}/outliers.parquet",
         other_observations=of_others("sensitivity", "observations"),
         other_outliers=of_others("sensitivity", "outliers"),
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         "results/{platform}/sensitivity.parquet",
     log:

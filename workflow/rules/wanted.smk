@@ -50,7 +50,8 @@ def settings_of_others(key):
     """What the files of the platforms say that the experiment of this key compares with."""
     return lambda wildcards: {
         name: PROJECT.platforms[name].model_dump(
-            mode="json", exclude={"description", "published", "experiments"}
+            mode="json",
+            exclude={"description", "published", "experiments", "map_frame"},
         )
         for name in others(key)(wildcards)
     }
@@ -71,6 +72,7 @@ def drawn_from(wildcards):
         "identifiability": experiments.noise_models,
         "consistency": experiments.noise_models,
         "consistency_summary": experiments.noise_models,
+        "detected_points": wildcards.platform in PROJECT.simulated,
     }
     return [
         f"results/{wildcards.platform}/{key}.parquet"

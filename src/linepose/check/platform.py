@@ -10,6 +10,7 @@ import pandas as pd
 
 from linepose.check import clock, covariances
 from linepose.check.camera import camera_findings
+from linepose.check.conventions import convention_findings
 from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, error, of_fault, ok
 from linepose.check.hand_measured import hand_findings
 from linepose.check.labels import count_findings, position_findings
@@ -17,11 +18,20 @@ from linepose.check.motion import motion_findings
 from linepose.check.prediction import predict
 from linepose.check.scans import scan_findings
 from linepose.check.views import view_findings
-from linepose.config.platform import LabelledViewsSection, Platform, ScansSection, platform_faults, read_yaml
+from linepose.config.platform import (
+    LabelledViewsSection,
+    Platform,
+    ScansSection,
+    load_platform,
+    platform_faults,
+    read_yaml,
+)
 from linepose.config.project import Project
 from linepose.config.study import check_study
 from linepose.csv_files import read_numbers
 from linepose.datasets import check_dataset
+from linepose.doctor.examine import HandSigmas, RecordingAt
+from linepose.doctor.recording import Recording
 from linepose.errors import InputError, LineposeError
 from linepose.navigation import NavigationCovariances
 from linepose.navigation_log import NavigationLog
@@ -53,17 +63,18 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
     findings = configuration_findings(platform, root)
     if any(finding.level == Level.ERROR for finding in findings):
         return CheckReport(platform, tuple(findings))
+    study = check_study(read_yaml(root / CONFIG) | {"platforms": [platform]})
+    settings = load_platform(root / study.platforms_folder, platform)
+    findings += camera_findings(settings.intrinsics())
     try:
         loaded = load_platform_project(platform, root, lambda _: False)
     except InputError as fault:
         return CheckReport(platform, (*findings, of_fault("data set", fault)))
-    settings = loaded.platforms[platform]
-    findings += camera_findings(settings.intrinsics())
     more, observations = recorded_findings(loaded, platform, root)
     findings += more
-    if observations is None:
+    if observations is None or any(finding.level == Level.ERROR for finding in findings):
         return CheckReport(platform, tuple(findings))
-    more, sigmas = geometry_findings(settings, observations)
+    more, sigmas = geometry_findings(settings, observations, _recorder(loaded, platform, root, observations))
     return CheckReport(platform, (*findings, *more), sigmas)
 
 
@@ -114,9 +125,9 @@ def recorded_findings(project: Project, platform: str, root: Path) -> tuple[list
 
 
 def geometry_findings(
-    settings: Platform, observations: pd.DataFrame
+    settings: Platform, observations: pd.DataFrame, recording_at: RecordingAt
 ) -> tuple[list[Finding], tuple[PredictedSigma, ...]]:
-    """Findings on motion, hand-measured pose and predicted sigmas, of a usable table of observations."""
+    """Findings on motion, hand-measured pose, conventions and predicted sigmas, of a usable table of observations."""
     survey, camera = survey_from_table(observations), settings.intrinsics()
     findings = motion_findings(survey)
     pose, covariance = settings.start_pose(), settings.start_covariance()
@@ -124,13 +135,33 @@ def geometry_findings(
         more, point_m = hand_findings(survey, camera, pose, covariance)
     except LineposeError as fault:
         return [*findings, error("hand measurement", str(fault), "check hand_measured and the navigation's axes")], ()
+    hand = settings.hand_measured
+    more += convention_findings(
+        recording_at, HandSigmas(hand.sigma_position_m, float(np.radians(hand.sigma_euler_deg)))
+    )
     findings += more
     if any(finding.level == Level.ERROR for finding in more):
         return findings, ()
-    hand = settings.hand_measured
     sigma = np.repeat([hand.sigma_position_m, np.radians(hand.sigma_euler_deg)], 3)
     prediction = predict(survey, camera, pose, sigma, point_m)
     return [*findings, *prediction.findings], prediction.sigmas
+
+
+def _recorder(project: Project, platform: str, root: Path, observations: pd.DataFrame) -> RecordingAt:
+    """What the convention doctor looks at: the observations, read again where it moves the camera's clock."""
+    settings, folder = project.platforms[platform], root / project.folder(platform)
+
+    def recording_at(shift_s: float) -> Recording:
+        table = observations
+        if shift_s:
+            if not _has_log(settings) or not folder.is_dir():
+                raise InputError(platform, "no navigation log", "one in which the clock can be moved", "go on without")
+            shift_us = round(shift_s * 1e6)
+            points = observations[["observation", "point", "time_us", "u_px"]]
+            table = with_navigation(points.assign(time_us=points["time_us"] + shift_us), settings, folder)
+        return Recording(survey_from_table(table), settings.intrinsics(), settings.start_pose())
+
+    return recording_at
 
 
 def _sum_findings(project: Project, platform: str, folder: Path) -> list[Finding]:

@@ -10,13 +10,14 @@ from linepose.check.finding import Finding, PredictedSigma, error, ok, warning
 from linepose.check.information import published_covariance, shared_covariance
 from linepose.check.motions import best_motions, motions, spread_in_words
 from linepose.check.replay import replayed
-from linepose.errors import EstimationError
+from linepose.errors import EstimationError, LineposeError
 from linepose.identifiability import WORDS, identifiability, in_body_axes
 from linepose.observations import Survey
 from linepose.pose import POSE_COLUMNS
 from linepose.rotations import Floats, small_rotation_by_rotation_vector
 
 TOO_LARGE: Final = 0.5  # of the hand measurement's sigma
+_SWEPT: Final = 0.5  # of the points, below which the replayed survey is not this one
 _UNITS: Final = ("m", "m", "m", "rad", "rad", "rad")
 _SUBJECT: Final = "predicted sigmas"
 
@@ -36,9 +37,17 @@ def predict(survey: Survey, camera: Camera, pose: Floats, hand_sigma: Floats, po
     (M, 3): the pattern points at that pose, from the survey's origin.
     """
     ideal = replayed(survey, camera, pose, point_m)
+    swept = np.isfinite(ideal.u_px).sum() / np.isfinite(survey.u_px).sum()
+    if swept < _SWEPT:
+        found = (
+            f"not known: at the hand-measured pose only {100 * swept:.0f} % of the points would cross the scan line on "
+            "the sensor when the vehicle drives along its heading"
+        )
+        advice = "check hand_measured.euler_deg (camera x lies along the scan line), and the navigation's yaw"
+        return Prediction((), (warning(_SUBJECT, found, advice),))
     try:
         published = published_covariance(ideal, camera, pose, point_m)
-    except EstimationError as fault:
+    except LineposeError as fault:
         found = f"a direction of the pose stays open; {spread_in_words(survey)} ({fault})"
         advice = "add passes from other sides, at other distances, and with the vehicle rolled and pitched"
         return Prediction((), (error(_SUBJECT, found, advice),))

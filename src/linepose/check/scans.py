@@ -9,9 +9,10 @@ from linepose.check.finding import Finding, error, numbers, of_fault, of_faults,
 from linepose.check.labels import sensor_findings
 from linepose.config.platform import ScansSection
 from linepose.errors import InputError
-from linepose.extraction.labels import read_labels
 from linepose.extraction.scan_survey import select_scans
-from linepose.extraction.scans import read_line_times, scan_size, times_path
+from linepose.extraction.scans import scan_size
+from linepose.formats.labels import read_point_labels
+from linepose.formats.line_times import line_times_of
 
 
 def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[list[Finding], pd.DataFrame | None]:
@@ -23,11 +24,11 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
         scans = select_scans(folder, source.scans, source.left_out)
     except InputError as fault:
         return [of_fault("scans", fault)], None
-    times, faults, widths = {}, [], {}
+    times, faults, widths, line_times = {}, [], {}, line_times_of(source)
     for number, path in scans.items():
         try:
             n_lines, widths[number] = scan_size(path)
-            times[number] = read_line_times(times_path(path), n_lines)
+            times[number] = line_times(path, n_lines)
         except InputError as fault:
             faults.append(fault)
     findings = of_faults("scans", faults)
@@ -43,7 +44,7 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
         )
         return [*findings, ok("labels", found)], None
     try:
-        labels = read_labels(folder / source.labels, list(scans))
+        labels = read_point_labels(folder, source.labels, scans, n_pixels)
     except InputError as fault:
         return [*findings, of_fault("labels", fault)], None
     label_findings, points = _timed(labels[labels["observation"].isin(times)], times, n_pixels)

@@ -1,5 +1,7 @@
 """`linepose check NAME`: everything that can be known before a run, all findings at once."""
 
+import logging
+
 import typer
 
 from linepose.cli.options import HERE, Name, ProjectFolder
@@ -18,6 +20,7 @@ def check(name: Name, project: ProjectFolder = HERE) -> None:
     from linepose.cli.findings import findings_table, plain_findings, plain_sigmas, sigmas_table, summary
     from linepose.project_folder import find_project
 
+    logging.getLogger("linepose").setLevel(logging.ERROR)  # readers' warnings are findings here
     root = find_project(project)
     console = Console()
     with Console(stderr=True).status("checking (the first time, a minute to compile)", spinner="dots"):

@@ -18,8 +18,3 @@ class OneLineFaults(TyperGroup):
         except LineposeError as error:
             typer.echo(f"linepose: {error}", err=True)
             raise typer.Exit(1) from None
-
-
-def missing(module: str, error: ImportError) -> LineposeError:
-    """The fault that a part of the package, or a library that it needs, is not installed."""
-    return LineposeError(f"{module} cannot be loaded ({error}); install linepose anew: pip install --upgrade linepose")

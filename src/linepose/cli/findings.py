@@ -3,6 +3,7 @@
 from typing import Final
 
 import numpy as np
+from rich.box import SIMPLE
 from rich.table import Table
 from rich.text import Text
 
@@ -14,7 +15,7 @@ _STYLES: Final = {Level.OK: "green", Level.WARNING: "yellow", Level.ERROR: "bold
 
 def findings_table(report: CheckReport) -> Table:
     """One row a finding; what to do stands below what was found."""
-    table = Table(title=f"linepose check {report.platform}", title_justify="left", show_lines=False, pad_edge=False)
+    table = Table(title=f"linepose check {report.platform}", title_justify="left", box=SIMPLE)
     for heading in ("", "about", "found, and what to do"):
         table.add_column(heading, overflow="fold", no_wrap=heading != "found, and what to do")
     for finding in report.findings:
@@ -27,7 +28,7 @@ def findings_table(report: CheckReport) -> Table:
 
 def sigmas_table(report: CheckReport) -> Table:
     """How well each number of the pose will be known."""
-    table = Table(title="predicted sigmas, if all observations are good", title_justify="left", pad_edge=False)
+    table = Table(title="predicted sigmas, if all observations are good", title_justify="left", box=SIMPLE)
     table.add_column("")
     for heading in ("by hand", "predicted", "with errors alike in a view"):
         table.add_column(heading, justify="right")

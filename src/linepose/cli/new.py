@@ -1,13 +1,15 @@
 """`linepose new NAME`: a commented platform file from options, or from answers to questions."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import click
 import typer
 
 from linepose.cli.options import HERE
+
+_SOURCES = ("labelled_views", "scans")
 
 
 def new(
@@ -57,19 +59,19 @@ def new(
     root, platforms = _places(project)
     if (platforms / f"{name}.yaml").exists() and not force:
         _refuse(platforms / f"{name}.yaml")
-    focal_length_mm = _given(focal_length_mm, "--focal-length-mm", "Focal length (mm)", float)
-    pixel_pitch_um = _given(pixel_pitch_um, "--pixel-pitch-um", "Pixel pitch (um)", float)
-    pixels = _given(pixels, "--pixels", "Pixels of a scan line", int)
+    focal_length_mm = _given(focal_length_mm, "--focal-length-mm", "Focal length (mm)", _number)
+    pixel_pitch_um = _given(pixel_pitch_um, "--pixel-pitch-um", "Pixel pitch (um)", _number)
+    pixels = _given(pixels, "--pixels", "Pixels of a scan line", _whole)
     if asks and principal_point_px is None:
         ask = "Principal point (px; the middle if not known)"
-        principal_point_px = _given(None, "--principal-point-px", ask, float, (pixels - 1) / 2)
+        principal_point_px = _given(None, "--principal-point-px", ask, _number, (pixels - 1) / 2)
     ask = "Camera in the body frame: forward right down (m), as in 0.2 0 -0.8"
     position_m = _given(position_m, "--position-m", ask, _triple)
     ask = "Camera to body: roll pitch yaw (deg), as in -56 0 -90"
     euler_deg = _given(euler_deg, "--euler-deg", ask, _triple)
     if asks and source is None:
         ask = "Recorded: labelled_views (points with poses) or scans (images and a raw log)"
-        source = _given(None, "--source", ask, click.Choice(["labelled_views", "scans"]), "labelled_views")
+        source = _given(None, "--source", ask, _source, "labelled_views")
     if asks and dataset is None:
         dataset = _given(None, "--dataset", "Folder of its files below data/", str, name)
     if asks and source == "scans" and navigation_format is None:
@@ -132,24 +134,52 @@ def _add_to_project(root: Path, name: str) -> None:
         typer.echo(f"added {name} to the platforms of {root / CONFIG}")
 
 
-def _given(value: Any, option: str, question: str, kind: Callable[[str], Any] | Any, default: Any = None) -> Any:
+def _given(value: Any, option: str, question: str, kind: Callable[[str], Any], default: Any = None) -> Any:
     """The option's value, or the answer to a question; a usage error that names the option where nobody answers."""
-    if value is not None:
-        return value
+    while value is None:
+        try:
+            answer = str(typer.prompt(question, default=default))
+        except typer.Abort:
+            typer.echo(err=True)
+            asked = question.partition(" (")[0].partition(":")[0].lower()
+            raise typer.BadParameter(f"no answer for {asked}: give it as {option}") from None
+        try:
+            value = kind(answer)
+        except ValueError as error:
+            typer.echo(f"{answer!r}: {error}; try again")
+    return value
+
+
+def _number(text: str) -> float:
     try:
-        return typer.prompt(question, type=kind, default=default)
-    except click.Abort:
-        raise click.UsageError(f"no answer for {question.partition(' (')[0].lower()}: give {option}") from None
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not value > 0 or math.isinf(value):
+        raise ValueError("expected a number above 0")
+    return value
+
+
+def _whole(text: str) -> int:
+    value = _number(text)
+    if value != int(value) or value < 2:
+        raise ValueError("expected a whole number from 2")
+    return int(value)
 
 
 def _triple(text: str) -> tuple[float, float, float]:
     """Three numbers between spaces or commas."""
-    parts = str(text).replace(",", " ").split()
     try:
-        first, second, third = (float(part) for part in parts)
+        first, second, third = (float(part) for part in text.strip("[]()").replace(",", " ").split())
     except ValueError:
-        raise click.BadParameter(f"{text!r} is not three numbers") from None
+        raise ValueError("expected three numbers") from None
     return first, second, third
+
+
+def _source(text: str) -> str:
+    if text not in _SOURCES:
+        raise ValueError(f"expected one of {', '.join(_SOURCES)}")
+    return text
 
 
 def _scaled(value: float, power: int) -> float:

@@ -14,7 +14,9 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 def run(
     name: Name,
     project: ProjectFolder = HERE,
-    cores: Annotated[int, typer.Option("--cores", "-c", min=1, help="Processor cores.", show_default="all")] = 0,
+    cores: Annotated[
+        int | None, typer.Option("--cores", "-c", min=1, help="Processor cores.", show_default="all")
+    ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", "-n", help="Only tell what would be made.")] = False,
     further: Annotated[
         list[str] | None,
@@ -32,7 +34,15 @@ def run(
     load_platform_project(name, root)
     snakefile = find_workflow(root)
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(snakefile), "--directory", str(root)]
-    command += ["--cores", str(cores or len(os.sched_getaffinity(0))), "--config", f'platforms=["{name}"]']
+    command += [
+        "--cores",
+        str(cores or len(os.sched_getaffinity(0))),
+        "--quiet",
+        "host",
+        "rules",
+        "--config",
+        f'platforms=["{name}"]',
+    ]
     command += ["--dry-run"] if dry_run else []
     finished = subprocess.run([*command, *(further or [])], check=False)
     if finished.returncode:

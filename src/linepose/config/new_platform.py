@@ -49,7 +49,9 @@ def check_name(name: str) -> str:
 
 def platform_text(new: NewPlatform) -> str:
     """The platform file as YAML, each key commented; raises InputError for values that no platform has."""
-    text = "\n".join([*_head(new), *_camera(new), "", *_hand(new), "", *_navigation(new), "", *_source(new), ""])
+    text = "\n".join(
+        [*_head(new), *_camera(new), "", *_hand(new), "", *_navigation(new), "", *_source(new), "", *_experiments(), ""]
+    )
     validated(Platform, yaml.safe_load(text), f"{new.name}.yaml")
     return text
 
@@ -149,6 +151,13 @@ def _source(new: NewPlatform) -> list[str]:
     if new.navigation_format in {"", "csv", "table"}:
         lines.append("  covariances: covariances.csv # rows of time (us) and the row-major 12x12 covariance")
     return lines
+
+
+def _experiments() -> list[str]:
+    return [
+        "experiments: # what else is worked out from the accepted observations; null leaves one out",
+        "  basin: null # how wrong the hand measurement may be: takes minutes to hours; remove this line to run it",
+    ]
 
 
 def _descriptions(section: type) -> Mapping[str, str]:

@@ -4,6 +4,7 @@ An offset moves a view along its path as a forward lever arm does, and turns it 
 direction or speed tell them apart. So the estimate comes with its correlations, and with the words to go by.
 """
 
+import logging
 from dataclasses import dataclass
 from typing import Final
 
@@ -14,6 +15,7 @@ from numpy.typing import ArrayLike
 from linepose.distance import mahalanobis_distance
 from linepose.errors import EstimationError
 from linepose.experiments.estimate import observation_list
+from linepose.experiments.jackknife import jackknife_sigma
 from linepose.identifiability import TURN_NAMES, in_body_axes
 from linepose.likelihood.clock_offset import ClockOffsetLikelihood
 from linepose.optimise import Search, laplace_covariance, optimise
@@ -21,6 +23,8 @@ from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.rotations import Floats
 from linepose.sampling import SamplingSettings, sample
 from linepose.stages import sample_table
+
+_logger = logging.getLogger(__name__)
 
 CORRELATION_COLUMNS: Final = tuple(f"correlation_{name.rsplit('_', 1)[0]}" for name in (*POSE_COLUMNS, *TURN_NAMES))
 TOLD_APART: Final = 0.75  # of the shrinkage: the sigma is half of what it was before any data
@@ -56,17 +60,21 @@ def estimate_clock_offset(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The offset and the pose together from a start pose (6,): a table of one row, and the samples behind its sigmas.
 
-    Columns as in `experiment_schemas.CLOCK_OFFSET` and `CLOCK_OFFSET_SAMPLES`. A sigma from the curvature is NaN where
-    the data leave a direction open.
+    The offset's sigma is the larger of the samples' and of leaving out observations. Columns as in
+    `experiment_schemas.CLOCK_OFFSET`; a sigma from the curvature is NaN where the data leave a direction open.
     """
     optimum = optimise(likelihood, start, search)
+    laplace_sigma, view_sigma = float("nan"), float("nan")
     try:
-        laplace_sigma = float(np.sqrt(laplace_covariance(likelihood, optimum.parameters)[-1, -1]))
+        curvature = laplace_covariance(likelihood, optimum.parameters)
+        laplace_sigma = float(np.sqrt(curvature[-1, -1]))
+        view_sigma = float(jackknife_sigma(likelihood, optimum.parameters, curvature)[-1])
     except EstimationError:
-        laplace_sigma = float("nan")
+        _logger.info("the data leave the clock offset or the pose open at the optimum: no sigma from the curvature")
     chain = sample(likelihood, optimum.parameters, seed, settings)
     names, covariance = likelihood.parameter_names, chain.covariance()
-    offset_s, sigma_s = float(optimum.parameters[-1]), float(chain.sigma()[-1])
+    offset_s, sampled_sigma_s = float(optimum.parameters[-1]), float(chain.sigma()[-1])
+    sigma_s = float(np.nanmax([sampled_sigma_s, view_sigma]))
     correlation = correlations(optimum.parameters, covariance, names)
     with_pose = correlation_with_all(covariance)
     shrinkage = 1 - sigma_s**2 / (likelihood.maximum_s**2 / 3)
@@ -78,7 +86,9 @@ def estimate_clock_offset(
         "observations": observation_list(likelihood.survey.number),
         "offset_s": offset_s,
         "sigma_s": sigma_s,
+        "sampled_sigma_s": sampled_sigma_s,
         "laplace_sigma_s": laplace_sigma,
+        "jackknife_sigma_s": view_sigma,
         "maximum_s": likelihood.maximum_s,
         "shrinkage": shrinkage,
         "correlation_pose": with_pose,

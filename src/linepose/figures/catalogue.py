@@ -25,7 +25,7 @@ from linepose.figures import (
 from linepose.figures.entry import CatalogueEntry, without
 from linepose.figures.noise_catalogue import NOISE_FIGURES
 from linepose.figures.results import PlatformResults
-from linepose.figures.scan_example import scan_example
+from linepose.figures.scan_example import scan_examples
 
 
 def _mapping(r: PlatformResults) -> Figure:
@@ -86,26 +86,6 @@ def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
     return lambda r: residuals.residuals_caption(r.table("residuals", result_schemas.RESIDUALS), by)
 
 
-def _stacked_scan(r: PlatformResults) -> Figure:
-    example = scan_example(r)
-    return scan.stacked_scan(example.intensity, example.points)
-
-
-def _stacked_scan_caption(r: PlatformResults) -> str:
-    example = scan_example(r)
-    return scan.stacked_scan_caption(example.intensity, example.observation)
-
-
-def _labelled_points(r: PlatformResults) -> Figure:
-    example = scan_example(r)
-    return scan.labelled_points(example.intensity, example.points)
-
-
-def _labelled_points_caption(r: PlatformResults) -> str:
-    example = scan_example(r)
-    return scan.labelled_points_caption(example.points, example.observation)
-
-
 def _without_splits(platform: Platform) -> str:
     settings = platform.experiments.repeatability
     told = "This experiment was not asked for: experiments.repeatability has no splits in the platform's file."
@@ -120,6 +100,11 @@ def _without_scans(platform: Platform) -> str:
     kind = platform.source.kind
     told = "This platform has no scans: its points were labelled before they came here."
     return told if kind == "labelled_views" else ""
+
+
+def _without_truth(platform: Platform) -> str:
+    told = "Detection is tried beside the labels only where the truth is known: in simulated platforms."
+    return "" if platform.simulation else told
 
 
 FIGURES: Final = (
@@ -137,19 +122,28 @@ FIGURES: Final = (
         "stacked_scan",
         "Stacked scan",
         "Figure 6",
-        "grey image of one observation's scan lines with the pattern framed",
-        _stacked_scan,
-        _stacked_scan_caption,
+        "grey images of a few observations' scan lines with the pattern's sheet framed",
+        lambda r: scan.stacked_scan(scan_examples(r, "points")),
+        lambda r: scan.stacked_scan_caption(scan_examples(r, "points")),
         _without_scans,
     ),
     CatalogueEntry(
         "labelled_points",
         "Points found in the scan",
         "Figure 7",
-        "close-up of the pattern in a scan, each point crossed and numbered",
-        _labelled_points,
-        _labelled_points_caption,
+        "close-ups of the pattern in scans, each point crossed and numbered",
+        lambda r: scan.points_in_scan(scan_examples(r, "points")),
+        lambda r: scan.labelled_points_caption(scan_examples(r, "points")),
         _without_scans,
+    ),
+    CatalogueEntry(
+        "detected_points",
+        "Points detected without labels",
+        "",
+        "close-ups of the pattern in scans, each detected point crossed and numbered",
+        lambda r: scan.points_in_scan(scan_examples(r, "detected_points")),
+        lambda r: scan.detected_points_caption(scan_examples(r, "detected_points")),
+        _without_truth,
     ),
     CatalogueEntry(
         "outliers",

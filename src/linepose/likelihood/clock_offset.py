@@ -23,6 +23,7 @@ from linepose.rotations import Floats
 OFFSET_NAME: Final = "clock_offset_s"
 STEPS: Final = 50  # of the grid, to the largest offset on either side
 _AROUND: Final = np.array([-1, 0, 1, 2])
+_MANY: Final = 64  # rows at one node
 _SCATTER: Final = 0.05  # of the largest offset: where walkers start
 
 
@@ -61,6 +62,12 @@ class ClockOffsetLikelihood(Likelihood):
         """That of the noise model, and a small part of the largest offset."""
         return np.append(self.inner.scatter(translation_m, rotation_rad), _SCATTER * self.maximum_s)
 
+    def approach(self) -> "Likelihood":
+        """The noise model's cheaper one with the offset; itself where there is none."""
+        if self.inner.approach() is self.inner:
+            return self
+        return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).approach(), self.maximum_s)
+
     def parameter_priors(self) -> dict[str, tuple[float, float]]:
         """Those of the noise model, and an even one of the offset."""
         return self.inner.parameter_priors() | {OFFSET_NAME: (0.0, self.maximum_s / np.sqrt(3))}
@@ -75,7 +82,7 @@ class ClockOffsetLikelihood(Likelihood):
         values = np.empty(nodes.shape)
         for node in np.unique(nodes):
             row, column = np.nonzero(nodes == node)
-            values[row, column] = self._node(int(node)).log_likelihoods(rows[inside[row], :-1])
+            values[row, column] = _evaluated(self._node(int(node)), rows[inside[row], :-1])
         out = np.full(len(rows), -np.inf)
         out[inside] = _between(values, offset[inside] - below)
         return out
@@ -108,6 +115,13 @@ class ClockOffsetLikelihood(Likelihood):
         """The same model of these observations only."""
         kept = tuple(numbers)
         return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).select(kept), self.maximum_s)
+
+
+def _evaluated(likelihood: Likelihood, rows: Floats) -> Floats:
+    """Log-likelihood of each row (K, P); few are not worth the start of threads."""
+    if len(rows) >= _MANY:
+        return likelihood.log_likelihoods(rows)
+    return np.array([likelihood.log_likelihood(row) for row in rows])
 
 
 def with_clock_offset(

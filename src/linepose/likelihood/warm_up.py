@@ -1,9 +1,9 @@
-"""Compiling every noise model's kernel on a small made-up survey; the compiled code is kept on disk."""
+"""Compiling a noise model's kernel on a small made-up survey; the compiled code is kept on disk."""
 
 import numpy as np
 
 from linepose.camera import Camera
-from linepose.likelihood.models import NOISE_MODELS, likelihood_of
+from linepose.likelihood.models import likelihood_of
 from linepose.observations import Survey
 
 _CAMERA = Camera(focal_length_m=8e-3, pixel_pitch_m=8e-6, n_pixels=600, principal_point_px=300.0)
@@ -11,16 +11,13 @@ _N_OBSERVATIONS = 4
 _N_POINTS = 3
 
 
-def warm_up() -> list[str]:
-    """Evaluate each noise model once in every way that there is; their names."""
-    survey = _survey()
-    for name in NOISE_MODELS:
-        likelihood = likelihood_of(name, survey, _CAMERA)
-        parameters = likelihood.start(np.zeros(6))
-        likelihood.log_likelihood(parameters)
-        likelihood.log_likelihoods(np.tile(parameters, (2, 1)))
-        likelihood.residuals(parameters)
-    return sorted(NOISE_MODELS)
+def warm_up(noise_model: str) -> None:
+    """Evaluate a noise model, by name, once in every way that there is."""
+    likelihood = likelihood_of(noise_model, _survey(), _CAMERA)
+    parameters = likelihood.start(np.zeros(6))
+    likelihood.log_likelihood(parameters)
+    likelihood.log_likelihoods(np.tile(parameters, (2, 1)))
+    likelihood.residuals(parameters)
 
 
 def _survey() -> Survey:

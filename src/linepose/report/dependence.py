@@ -23,11 +23,11 @@ def dependence_section(results: PlatformResults) -> SectionOnPage | None:
         changes = changes.iloc[1:]  # after the nominal one
         farthest = changes.loc[changes["distance_m"].idxmax()]
         told.append(
-            f"Of the settings tried, {farthest['change']} moves the camera most: by "
+            f"Of the changes tried, {farthest['change']} moves the camera most: by "
             f"{1e3 * farthest['distance_m']:.0f} mm and {np.degrees(farthest['angle_rad']):.2f}°."
         )
         rows = _rows(changes["change"], changes, changes["mahalanobis"], pose)
-        tables.append(_table(results.name, "settings", "Other settings", rows))
+        tables.append(_table(results.name, "settings", "Other settings and data", rows))
     if results.has("leave_one_out"):
         without = results.table("leave_one_out", experiment_schemas.LEAVE_ONE_OUT)
         without = without.sort_values("influence", ascending=False)

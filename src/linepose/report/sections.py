@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import pandas as pd
+
+_LONGEST_NUMBER: Final = 20
 
 
 @dataclass(frozen=True)
@@ -17,6 +19,11 @@ class TableOnPage:
     heads: Sequence[str]
     rows: Sequence[Sequence[str]]
     folded: bool = True
+
+    @property
+    def text_columns(self) -> set[int]:
+        """Columns that hold names or sentences rather than numbers."""
+        return {0} | {k for row in self.rows for k, text in enumerate(row) if len(text) > _LONGEST_NUMBER}
 
 
 @dataclass(frozen=True)

@@ -109,3 +109,15 @@ def test_summary_of_right_and_of_half_sigmas():
     assert (first["share_beyond_68"], first["share_beyond_95"]) == (0.32, 0.05)
     assert first["kolmogorov"] == pytest.approx(0.5 / 200)
     assert second["kolmogorov"] > 0.5
+
+
+@pytest.mark.parametrize(
+    ("subsets", "parts"),
+    [([], ["shared-own-000000-000003"]), ([[1, 2], [3, 4]], ["shared-pairs", "shared-own-000000-000003"])],
+)
+def test_one_group_without_subsets_has_no_pairs(gaussian, subsets, parts):
+    group = Group(gaussian, gaussian.means.mean(axis=0))
+    work = Comparisons({"shared": {"own": group}}, subsets, np.zeros(6), 1).parts(3, 5)
+    assert list(work) == parts
+    for part in work.values():
+        assert len(part())

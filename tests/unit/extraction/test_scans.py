@@ -1,3 +1,7 @@
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -53,6 +57,30 @@ def test_many_chunks_give_the_same_mean(tmp_path, cube, interleave, monkeypatch)
     path = write_envi(tmp_path, cube, interleave)
     monkeypatch.setattr(scans, "_CHUNK_BYTES", 3 * cube[0].size * 2)
     np.testing.assert_allclose(spectral_mean(path), cube.mean(axis=2), rtol=1e-6)
+
+
+_GROWTH = """
+import sys
+from pathlib import Path
+from linepose.extraction.scans import spectral_mean
+def peak_mb():
+    return int(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]) / 1024
+before = peak_mb()
+spectral_mean(Path(sys.argv[1]))
+print(peak_mb() - before)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="peak memory as Linux tells it")
+def test_memory_holds_a_chunk_and_never_the_file(tmp_path):
+    n_lines, n_pixels, n_bands = 650, 648, 244
+    path = write_envi(tmp_path, np.zeros((1, n_pixels, n_bands)), lines=n_lines)
+    with (tmp_path / "scan.img").open("wb") as data:
+        data.truncate(2 * n_lines * n_pixels * n_bands)  # 206 MB that take no place on the disk
+    command = [sys.executable, "-c", _GROWTH, str(path)]
+    grown_mb = float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    # a chunk of 64 MB, its sums of four bytes a pixel, and what reading the header takes
+    assert grown_mb < 100
 
 
 def test_sum_of_the_brightest_bands_does_not_overflow(tmp_path):

@@ -19,7 +19,7 @@ from linepose.storage import write_table
 
 from .. import made_up
 
-WITHOUT_SCANS = {"stacked_scan", "labelled_points"}
+WITHOUT_SCANS = {"stacked_scan", "labelled_points", "detected_points"}
 
 
 @pytest.fixture(scope="module")

@@ -144,3 +144,13 @@ def test_log_without_poses_is_one_line(tmp_path, drive, content, told):
 def test_a_bag_of_the_driver_without_fixes_is_told(samples):
     with pytest.raises(InputError, match=r"found 0 topics of sensor_msgs/msg/NavSatFix.*the bag holds /gps/imu"):
         read_navigation(RosbagSection(format="rosbag", file="novatel/ins1.bag"), samples)
+
+
+def test_logs_that_overlap_are_told(tmp_path, drive):
+    for name, rows in (("a", range(6)), ("b", range(5, 9))):
+        messages = [novatel_writer.pva("INSPVAS", drive, row, True) for row in rows]
+        (tmp_path / f"{name}.gps").write_bytes(b"".join(messages))
+    with pytest.raises(
+        InputError, match=r"b.gps: found a log that begins at .*, expected one that begins after the end of"
+    ):
+        read_navigation(section("*.gps"), tmp_path)
