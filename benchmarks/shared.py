@@ -2,7 +2,8 @@
 
 On the Ladybird field data where present, otherwise on a simulated survey of the same size. Processor time of the
 thread beside wall time, because only the former is repeatable on a busy machine. Asked for: at most 0.5 ms an
-evaluation of 16 observations, and a chain with a split R-hat below 1.01 and 2,000 effective samples in 60 s on two cores.
+evaluation of 16 observations, and in 60 s on two cores a chain with a split R-hat below 1.01 and 2,000 effective
+samples.
 """
 
 import argparse
