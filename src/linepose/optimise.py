@@ -2,6 +2,8 @@
 
 A noise model with parameters of its own (levels, intrinsics) is searched in two steps, since Powell's method takes five
 times as long over eleven parameters as a gradient does: Powell, coarsely, over the pose, then BFGS over everything.
+With levels that are far off, Powell's method can leave a good start for a worse minimum, so BFGS also goes from the
+start itself, and the better end counts.
 """
 
 from dataclasses import dataclass, replace
@@ -76,8 +78,9 @@ def optimise_within(
     else:
         coarse = replace(search, x_tolerance=_COARSE_X, f_tolerance=_COARSE_F)
         first = _powell(likelihood, start, centre, half_width, coarse)
-    found = _climb(likelihood, first.parameters, centre, half_width)
-    return replace(found, n_evaluations=first.n_evaluations + found.n_evaluations)
+    ends = [_climb(likelihood, parameters, centre, half_width) for parameters in (start, first.parameters)]
+    best = min(ends, key=lambda end: end.neg_log_likelihood)
+    return replace(best, n_evaluations=first.n_evaluations + sum(end.n_evaluations for end in ends))
 
 
 def _powell(likelihood: Likelihood, start: Floats, centre: Floats, half_width: Floats, search: Search) -> Optimum:

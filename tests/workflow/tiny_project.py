@@ -32,7 +32,7 @@ TINY = {
         "basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]},
         "repeatability": None,
         "sensitivity": None,
-        "noise_models": {"n_splits": 2},
+        "noise_models": {"n_splits": 2, "robust_steps": 12},
     },
     "simulation": {
         "passes": PASSES,
