@@ -87,7 +87,13 @@ class Cell:
             "noise_model": self.noise_model,
             "survey": index,
             **dict(zip(TRUE_COLUMNS, truth, strict=True)),
-            **dict(zip(TRUE_LEVEL_COLUMNS, (levels.shared, levels.white, _NOTHING if levels.pixel is None else levels.pixel), strict=True)),
+            **dict(
+                zip(
+                    TRUE_LEVEL_COLUMNS,
+                    (levels.shared, levels.white, _NOTHING if levels.pixel is None else levels.pixel),
+                    strict=True,
+                )
+            ),
             **estimate_row(self.likelihood(survey), self.start_pose, truth, random, self.n_draws),
         }
 
@@ -110,7 +116,9 @@ def estimate_row(
         "neg_log_likelihood": found.neg_log_likelihood,
         "n_evaluations": found.n_evaluations,
         "failed": True,
-        **dict.fromkeys([*SIGMA_COLUMNS, *LEVEL_COLUMNS, *RANK_COLUMNS, "pareto_shape", "effective_sample_size"], _NOTHING),
+        **dict.fromkeys(
+            [*SIGMA_COLUMNS, *LEVEL_COLUMNS, *RANK_COLUMNS, "pareto_shape", "effective_sample_size"], _NOTHING
+        ),
         "laplace_credibility": 1.0,
         "credibility": 1.0,
     }
