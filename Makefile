@@ -32,7 +32,7 @@ check: $(STAMP) ## Style, types and the workflow's own lint
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 
 bench: $(STAMP) ## Measure speed on this machine
-	@for name in machine likelihood pipeline experiments workflow shared; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
+	@for name in machine likelihood pipeline experiments workflow scans shared; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
 
 readme-bench: $(STAMP) ## Measure speed and put the figures into README.md; on a machine that does nothing else
 	set -o pipefail; $(MAKE) --silent bench | $(BIN)/python benchmarks/into_readme.py

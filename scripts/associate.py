@@ -7,8 +7,8 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import LabelledViewsSection, Platform
     from linepose.navigation import median_sigma_table
-    from linepose.recorded import read_reported, with_navigation
-    from linepose.result_schemas import NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS
+    from linepose.recorded import map_frame_table, read_reported, with_navigation
+    from linepose.result_schemas import MAP_FRAME, NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS
     from linepose.storage import read_table, write_table
 
     platform, folder = Platform.model_validate(snakemake.params.platform), Path(snakemake.params.folder)
@@ -16,4 +16,5 @@ with stage(snakemake) as log:
     observations = with_navigation(read_table(snakemake.input[0], schema), platform, folder)
     write_table(observations, snakemake.output.observations, OBSERVATIONS)
     write_table(median_sigma_table(read_reported(platform, folder)), snakemake.output.sigma, NAVIGATION_SIGMA)
+    write_table(map_frame_table(platform, folder), snakemake.output.frame, MAP_FRAME)
     log.info("largest gap to a covariance: %.3f s", observations["nav_gap_s"].max())

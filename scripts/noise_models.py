@@ -3,6 +3,8 @@
 from adapter import stage
 
 with stage(snakemake) as log:
+    from dataclasses import replace
+
     import numpy as np
 
     from linepose.config.experiments import RepeatabilitySection
@@ -31,7 +33,8 @@ with stage(snakemake) as log:
     pair = named_pair(data, repeatability, params.file)
     sets |= {name: data.accepted.survey.select(list(numbers)) for name, numbers in pair.items()}
     independence = sampling_settings(params.independence_sampling)
-    settings = {PUBLISHED: sampling_settings(params.sampling), SHARED: independence, ROBUST: independence}
+    settings = {PUBLISHED: sampling_settings(params.sampling), SHARED: independence}
+    settings[ROBUST] = replace(independence, n_steps=params.robust_steps)
     search = SearchSection.model_validate(params.search).settings()
     fits = []
     for fit in fit_noise_models(sets, platform.intrinsics(), settings, platform.start_pose(), params.seed, search):

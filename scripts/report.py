@@ -7,21 +7,22 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.figures.results import PlatformResults
+    from linepose.report.assemble import platform_on_page
     from linepose.report.made_with import settings_text, versions
-    from linepose.report.page import PlatformOnPage, figures_on_page, render_page
-    from linepose.report.platform_sections import platform_sections
+    from linepose.report.page import render_page
     from linepose.report.published import published_sections
-    from linepose.report.summary import summarise
-    from linepose.result_schemas import FIGURES, REGRESSION
+    from linepose.result_schemas import REGRESSION
     from linepose.storage import read_table, whole_file
 
     platforms = []
     for name, values in snakemake.params.platforms.items():
-        folder = Path(snakemake.output[0]).parent / name
-        platform = Platform.model_validate(values)
-        results = PlatformResults(name, platform, folder, snakemake.params.study["outliers"]["threshold_px"])
-        figures = figures_on_page(name, folder / "figures", read_table(folder / "figures" / "index.parquet", FIGURES))
-        platforms.append(PlatformOnPage(summarise(results), platform_sections(results), figures, settings_text(values)))
+        results = PlatformResults(
+            name=name,
+            platform=Platform.model_validate(values),
+            folder=Path(snakemake.output[0]).parent / name,
+            threshold_px=snakemake.params.study["outliers"]["threshold_px"],
+        )
+        platforms.append(platform_on_page(results, values))
         log.info("%s: %s", name, platforms[-1].summary.verdict.sentence)
     page = render_page(
         platforms,

@@ -74,6 +74,7 @@ class Calibration:
     covariance: Floats
     hand_measured: HandMeasured
     threshold_px: float
+    noise_model: str
     observations: pd.DataFrame = field(repr=False)
     outlier_removal: pd.DataFrame = field(repr=False)
     optima: pd.DataFrame = field(repr=False)
@@ -185,8 +186,17 @@ class _InMemory:
     calibration: Calibration
 
     @property
+    def name(self) -> str:
+        """What messages call it."""
+        return "calibration"
+
+    @property
     def threshold_px(self) -> float:
         return self.calibration.threshold_px
+
+    @property
+    def noise_model(self) -> str:
+        return self.calibration.noise_model
 
     def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
         return self.calibration.tables()[name][schema.names]

@@ -28,7 +28,14 @@ from linepose.optimise import Search
 from linepose.outliers import outlier_table, reject_outliers, stage_observations
 from linepose.pose import N_PARAMETERS
 from linepose.residual_tables import residual_tables
-from linepose.sampling import IndependenceSettings, SamplingSettings, sample, section_of, stage_seed
+from linepose.sampling import (
+    IndependenceSettings,
+    SamplingSettings,
+    default_settings,
+    sample,
+    section_of,
+    stage_seed,
+)
 from linepose.stages import (
     diagnostics_table,
     estimated_parameters,
@@ -40,6 +47,7 @@ from linepose.stages import (
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
 _STAGE = "inliers"
+PRIORS = ("none", "hand_measured")
 
 
 @dataclass(frozen=True)
@@ -86,9 +94,7 @@ def calibrate(
     names = likelihood.parameter_names
     optimum = optima.loc[0, list(names)].to_numpy(dtype=float, copy=True)
     seed = stage_seed(settings.seed, len(accepted[_STAGE]))
-    sampling = settings.sampling or (
-        SamplingSettings() if settings.noise_model == PUBLISHED else IndependenceSettings()
-    )
+    sampling = settings.sampling or default_settings(settings.noise_model)
     chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, sampling)
     samples = sample_table(chain, names)
     diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)), section_of(sampling))
@@ -98,6 +104,7 @@ def calibrate(
         covariance=chain.covariance()[:N_PARAMETERS, :N_PARAMETERS],
         hand_measured=hand_measured,
         threshold_px=settings.threshold_px,
+        noise_model=settings.noise_model,
         observations=observations,
         outlier_removal=outliers,
         optima=optima,
@@ -114,6 +121,8 @@ def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.Da
     if settings.noise_model not in NOISE_MODELS:
         known = ", ".join(NOISE_MODELS)
         raise InputError("noise_model", repr(settings.noise_model), f"one of {known}", "choose one of these")
+    if settings.prior not in PRIORS:
+        raise InputError("prior", repr(settings.prior), f"one of {', '.join(PRIORS)}", "choose one of these")
     missing = [name for name in _NEEDED if name not in observations.columns]
     if missing:
         raise InputError(

@@ -111,6 +111,9 @@ ESTIMATED_POINTS: Final = pa.schema(
     [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS, *POINT_COVARIANCE_COLUMNS)]
 )
 FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
+MAP_FRAME: Final = pa.schema(
+    [*texts("crs"), *(pa.field(name, pa.float64()) for name in ("latitude_deg", "longitude_deg", "height_m"))]
+)
 NAVIGATION_SIGMA: Final = pa.schema(floats(*navigation.SIGMA_COLUMNS))
 TRUTH_ERROR: Final = pa.schema(
     [

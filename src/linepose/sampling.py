@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from linepose.errors import EstimationError, InputError
 from linepose.likelihood.base import Likelihood
+from linepose.likelihood.names import PUBLISHED
 from linepose.moves import independence_move
 from linepose.optimise import laplace_covariance
 from linepose.rotations import Floats
@@ -42,7 +43,7 @@ class IndependenceSettings:
 
     n_walkers: int = 24
     n_burn_in: int = 160
-    n_steps: int = 640
+    n_steps: int = 1000
     independent_share: float = 0.9
 
 
@@ -89,7 +90,6 @@ def sample(
         )
     random = np.random.RandomState(seed)
     centre = np.asarray(optimum, dtype=float)
-    likelihood = likelihood.around(centre)
     if isinstance(settings, IndependenceSettings):
         start, moves = _fitted_proposals(likelihood, centre, random, settings, show_progress)
     else:
@@ -105,6 +105,11 @@ def sample(
         log_likelihood=sampler.get_log_prob(),
         acceptance_fraction=sampler.acceptance_fraction,
     )
+
+
+def default_settings(noise_model: str) -> SamplingSettings | IndependenceSettings:
+    """The settings that a noise model is sampled with where nothing else is said."""
+    return SamplingSettings() if noise_model == PUBLISHED else IndependenceSettings()
 
 
 def section_of(settings: SamplingSettings | IndependenceSettings) -> str:

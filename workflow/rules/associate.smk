@@ -4,6 +4,7 @@ rule associate:
     output:
         observations="results/{platform}/observations.parquet",
         sigma="results/{platform}/navigation_sigma.parquet",
+        frame="results/{platform}/map_frame.parquet",
     log:
         "results/logs/{platform}/associate.log",
     conda:

@@ -19,11 +19,11 @@ rule clock_offset:
         clock_offset=experiment("clock_offset"),
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
         search=section("search"),
-        sampling=section("sampling"),
+        sampling=sampling,
         seed=STUDY.seed,
         code=[
             source_digest("linepose.experiments.clock_offset"),
-            source_digest("linepose.navigation_motion"),
+            source_digest("linepose.recorded"),
             source_digest("linepose.experiments.accepted"),
             source_digest("linepose.likelihood.models"),
         ],

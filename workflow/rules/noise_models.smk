@@ -17,6 +17,9 @@ rule noise_models:
     params:
         platform=settings,
         others=settings_of_others("noise_models"),
+        robust_steps=lambda wildcards: PROJECT.platforms[
+            wildcards.platform
+        ].experiments.noise_models.robust_steps,
         repeatability=experiment("repeatability"),
         file=platform_file,
         search=section("search"),

@@ -26,9 +26,7 @@ rule report:
         },
         study=STUDY.model_dump(mode="json"),
         code=[
-            source_digest("linepose.report.made_with"),
-            source_digest("linepose.report.page"),
-            source_digest("linepose.report.platform_sections"),
+            source_digest("linepose.report.assemble"),
             source_digest("linepose.report.published"),
         ],
         templates=files_digest("report/templates"),

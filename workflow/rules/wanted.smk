@@ -50,7 +50,8 @@ def settings_of_others(key):
     """What the files of the platforms say that the experiment of this key compares with."""
     return lambda wildcards: {
         name: PROJECT.platforms[name].model_dump(
-            mode="json", exclude={"description", "published", "experiments"}
+            mode="json",
+            exclude={"description", "published", "experiments", "map_frame"},
         )
         for name in others(key)(wildcards)
     }

@@ -26,6 +26,10 @@ def export(
     ] = None,
     parent_frame: Annotated[str, typer.Option(help="Name of the body's frame.")] = "base_link",
     child_frame: Annotated[str, typer.Option(help="Name of the camera's frame.")] = "line_camera_optical",
+    body_axes: Annotated[
+        str, typer.Option(help="flu or frd: forward, left, up or forward, right, down.", show_default="of the format")
+    ] = "",
+    stage: Annotated[str, typer.Option(help="inliers, all, or hand_measured.")] = "inliers",
     _: Annotated[
         bool, typer.Option("--list", callback=_tell_formats, is_eager=True, help="Tell the formats and end.")
     ] = False,
@@ -33,7 +37,7 @@ def export(
 ) -> None:
     """Write a finished platform's pose, or the points it maps, for a robot or a map."""
     from linepose.errors import InputError
-    from linepose.exports import EXPORTS, ExportOptions, export_platform
+    from linepose.exports import EXPORTS, export_options, export_platform
     from linepose.project_folder import find_project, load_platform_project
 
     if not format:
@@ -45,5 +49,5 @@ def export(
     target = output or root / "results" / name / "exports"
     if output is None:
         target.mkdir(exist_ok=True)
-    options = ExportOptions(parent_frame=parent_frame, child_frame=child_frame)
-    typer.echo(export_platform(root / "results", platform, name, format, target, options=options))
+    options = export_options(parent_frame, child_frame, body_axes)
+    typer.echo(export_platform(root / "results", platform, name, format, target, stage, options))

@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
+from linepose.config.coverage import CoverageSection
 from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
-from linepose.likelihood.names import PUBLISHED
+from linepose.likelihood.names import sampling_section
 from linepose.optimise import Search
 from linepose.sampling import IndependenceSettings, SamplingSettings
 
@@ -65,7 +66,7 @@ class IndependenceSamplingSection(Section):
 
     n_walkers: int = Field(24, ge=22, description="Walkers of the ensemble, two a parameter or more.")
     n_burn_in: int = Field(160, ge=20, description="Steps that fit the proposals, thrown away.")
-    n_steps: int = Field(640, ge=4, description="Steps kept.")
+    n_steps: int = Field(1000, ge=4, description="Steps kept.")
     independent_share: float = Field(
         0.9, gt=0, lt=1, description="Share of proposals from the fit; the rest are differential evolution."
     )
@@ -98,10 +99,13 @@ class Study(Section):
     independence_sampling: IndependenceSamplingSection = Field(
         IndependenceSamplingSection(), description="MCMC of the noise models shared and robust."
     )
+    coverage: CoverageSection = Field(CoverageSection(), description="Coverage study; not part of the main job.")
 
     def sampling_of(self, noise_model: str) -> SamplingSection | IndependenceSamplingSection:
         """The sampling section for a noise model."""
-        return self.sampling if noise_model == PUBLISHED else self.independence_sampling
+        section = getattr(self, sampling_section(noise_model))
+        assert isinstance(section, SamplingSection | IndependenceSamplingSection)
+        return section
 
 
 def load_dataset(path: Path) -> DatasetSection:

@@ -14,13 +14,13 @@ from linepose.exports.geojson import write_geojson
 from linepose.exports.geopackage import write_geopackage
 from linepose.exports.json_file import write_json
 from linepose.exports.kalibr import write_kalibr
-from linepose.exports.options import BodyAxes, ExportOptions
+from linepose.exports.options import BodyAxes, ExportOptions, export_options
 from linepose.exports.points import frame_of, read_mapped_points
 from linepose.exports.ros2 import write_ros2
 from linepose.exports.urdf import write_urdf
 from linepose.storage import whole_file
 
-__all__ = ["EXPORTS", "ExportOptions", "Exporter", "Finished", "export_platform"]
+__all__ = ["EXPORTS", "ExportOptions", "Exporter", "Finished", "export_options", "export_platform"]
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def _points(write: Callable[..., None]) -> Callable[[Finished, ExportOptions, Pa
     """A writer of layers of points in a map frame, as an exporter's."""
 
     def of_finished(finished: Finished, options: ExportOptions, path: Path) -> None:  # noqa: ARG001
-        frame = frame_of(finished.platform, finished.name)
+        frame = frame_of(finished.results, finished.platform, finished.name)
         write(read_mapped_points(finished.results, finished.name, finished.stage, frame), frame, path)
 
     return of_finished

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from linepose.errors import InputError
+from linepose.formats.local_frame import GEODETIC, geodetic_from_local, tangent_frame, utm_crs
 from linepose.rotations import Floats
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
 Origin = tuple[float, float, float]
 
-GEODETIC: Final = "EPSG:4979"  # WGS84: latitude, longitude (deg), ellipsoidal height (m)
 _TO_EAST_NORTH_UP: Final = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 _STEP_M: Final = 1.0  # for derivatives of a map that bends over kilometres
 
@@ -43,8 +43,7 @@ class MapFrame:
         east_north_up = np.asarray(north_east_down, dtype=float) @ _TO_EAST_NORTH_UP.T
         if self.origin is None:
             return east_north_up
-        on_earth = np.stack(_from_tangent_plane(self.origin).transform(*east_north_up.T), axis=-1)
-        longitude, latitude, height = on_earth.T
+        latitude, longitude, height = geodetic_from_local(tangent_frame(self.origin), north_east_down).T
         return np.stack(self._to_geodetic.transform(longitude, latitude, height, direction="INVERSE"), axis=-1)
 
     def covariances(self, north_east_down: ArrayLike, covariance: ArrayLike) -> Floats:
@@ -98,21 +97,8 @@ def tangent_map(origin: Origin, place: str) -> MapFrame:
     if not (-80 <= latitude <= 84 and -180 <= longitude <= 360):
         found = f"latitude {latitude:g}, longitude {longitude:g} deg"
         raise InputError(place, found, "a place between 80 deg south and 84 deg north", "check the order and the unit")
-    zone = int((longitude + 180.0) % 360.0 // 6.0) + 1
-    return MapFrame(f"EPSG:{(32600 if latitude >= 0 else 32700) + zone}", origin)
+    return MapFrame(utm_crs(latitude, longitude), origin)
 
 
 def _in_metres(crs: Any) -> bool:
     return all(axis.unit_conversion_factor == 1.0 for axis in crs.axis_info)
-
-
-def _from_tangent_plane(origin: Origin) -> "Transformer":
-    """From east, north, up (m) at an origin to longitude, latitude (deg), ellipsoidal height (m)."""
-    from pyproj import Transformer
-
-    latitude, longitude, height = origin
-    return Transformer.from_pipeline(
-        "+proj=pipeline "
-        f"+step +inv +proj=topocentric +ellps=WGS84 +lat_0={latitude!r} +lon_0={longitude!r} +h_0={height!r} "
-        "+step +inv +proj=cart +ellps=WGS84 +step +proj=unitconvert +xy_in=rad +xy_out=deg"
-    )

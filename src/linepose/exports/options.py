@@ -15,6 +15,14 @@ AXES_IN_WORDS: Final[dict[BodyAxes, str]] = {
 _FRAME_NAME: Final = re.compile(r"[A-Za-z0-9_]([A-Za-z0-9_/.-]*[A-Za-z0-9_])?")
 
 
+def export_options(parent_frame: str, child_frame: str, body_axes: str) -> "ExportOptions":
+    """The options that words of a command line give; no body axes for those of the format."""
+    axes: dict[str, BodyAxes | None] = {"": None, "frd": "frd", "flu": "flu"}
+    if body_axes not in axes:
+        raise InputError("body axes", repr(body_axes), "frd or flu", "correct it")
+    return ExportOptions(parent_frame, child_frame, axes[body_axes])
+
+
 @dataclass(frozen=True)
 class ExportOptions:
     """Names of the body's and the camera's frame, and the body's axes; none for what the format is used with.

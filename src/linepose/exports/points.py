@@ -12,9 +12,10 @@ from linepose.experiment_schemas import MAPPING
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.exports.calibration import finished
 from linepose.exports.map_frame import MapFrame, projected_map, tangent_map
+from linepose.formats.local_frame import GEODETIC
 from linepose.observations import POSITION_COLUMNS
 from linepose.residual_tables import POINT_COVARIANCE_COLUMNS
-from linepose.result_schemas import ESTIMATED_POINTS
+from linepose.result_schemas import ESTIMATED_POINTS, MAP_FRAME
 from linepose.storage import read_table
 
 MAP_COLUMNS: Final = ("easting_m", "northing_m", "height_m")
@@ -26,13 +27,23 @@ PROJECTED_POSES: Final = ("calibrated", "hand_measured")
 _STAGE: Final = "inliers"
 
 
-def frame_of(platform: Platform, name: str) -> MapFrame:
-    """The map that a platform's points go to; raises InputError where its file does not say where the survey lies."""
+def frame_of(results: Path, platform: Platform, name: str) -> MapFrame:
+    """The map that a platform's points go to: what its file says, or its navigation log.
+
+    Raises InputError where neither says where the survey lies.
+    """
     section, place = platform.map_frame, f"{name}.yaml: map_frame"
     if section is not None and section.crs is not None:
         return projected_map(section.crs, f"{place}.crs")
     if section is not None and section.origin is not None:
         return tangent_map(section.origin, f"{place}.origin")
+    of_log = results / name / "map_frame.parquet"
+    recorded = read_table(of_log, MAP_FRAME) if of_log.is_file() else None
+    if recorded is not None and len(recorded):
+        row = recorded.iloc[0]
+        if row["crs"] != GEODETIC:
+            return projected_map(row["crs"], f"{of_log}: crs")
+        return tangent_map((row["latitude_deg"], row["longitude_deg"], row["height_m"]), str(of_log))
     raise InputError(
         place,
         "nothing",

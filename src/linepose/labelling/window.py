@@ -141,7 +141,6 @@ class LabelWindow:
         self.axes.imshow(
             self._intensity, cmap="gray", vmin=low, vmax=max(high, low + 1e-6), aspect="auto", interpolation="nearest"
         )
-        self.axes.set_autoscale_on(False)  # a point must not move what is in view
         self.axes.set_xlabel("pixel")
         self.axes.set_ylabel("scan line")
         self._keep_home()

@@ -70,10 +70,6 @@ class Likelihood(ABC):
         """A cheaper model of the same parameters, from whose optimum a search may start; itself where there is none."""
         return self
 
-    def around(self, parameters: ArrayLike) -> "Likelihood":  # noqa: ARG002
-        """The same model made quicker near these parameters (P,); itself where it cannot be."""
-        return self
-
     def parameter_priors(self) -> dict[str, tuple[float, float]]:
         """Centre and sigma of the prior that the model itself brings, by parameter; none of the pose."""
         return {}

@@ -62,6 +62,12 @@ class ClockOffsetLikelihood(Likelihood):
         """That of the noise model, and a small part of the largest offset."""
         return np.append(self.inner.scatter(translation_m, rotation_rad), _SCATTER * self.maximum_s)
 
+    def approach(self) -> "Likelihood":
+        """The noise model's cheaper one with the offset; itself where there is none."""
+        if self.inner.approach() is self.inner:
+            return self
+        return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).approach(), self.maximum_s)
+
     def parameter_priors(self) -> dict[str, tuple[float, float]]:
         """Those of the noise model, and an even one of the offset."""
         return self.inner.parameter_priors() | {OFFSET_NAME: (0.0, self.maximum_s / np.sqrt(3))}

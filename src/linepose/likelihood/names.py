@@ -6,3 +6,8 @@ NoiseModelName = Literal["published", "shared", "robust"]
 PUBLISHED: Final = "published"
 SHARED: Final = "shared"
 ROBUST: Final = "robust"
+
+
+def sampling_section(noise_model: str) -> str:
+    """The section of config.yaml that says how a noise model is sampled."""
+    return "sampling" if noise_model == PUBLISHED else "independence_sampling"

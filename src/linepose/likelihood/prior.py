@@ -89,10 +89,6 @@ class WithPrior(Likelihood):
         cheaper = self.inner.approach()
         return self if cheaper is self.inner else WithPrior(cheaper, self.prior)
 
-    def around(self, parameters: ArrayLike) -> "WithPrior":
-        """The inner model made quicker near these parameters (P,), with the same prior."""
-        return WithPrior(self.inner.around(parameters), self.prior)
-
     def chi_square(self, parameters: ArrayLike) -> tuple[float, int]:
         """That of the inner model: the prior is not a residual."""
         return self.inner.chi_square(parameters)

@@ -25,14 +25,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from linepose.camera import Camera
-from linepose.errors import EstimationError, InputError
-from linepose.likelihood.robust_marginal import (
-    Freedom,
-    Weighting,
-    robust_marginal,
-    row_log_likelihood,
-    rows_log_likelihood,
-)
+from linepose.errors import InputError
+from linepose.likelihood.robust_marginal import Freedom, robust_marginal, row_log_likelihood, rows_log_likelihood
 from linepose.likelihood.shared import SharedLikelihood, SharedPriors
 from linepose.likelihood.shared_kernel import levels_at, optics_at
 from linepose.likelihood.shared_marginal import Marginal
@@ -63,24 +57,14 @@ class RobustSharedLikelihood(SharedLikelihood):
     """Log-density of pose, levels and intrinsics under the shared-error model with heavy tails, priors counted in.
 
     Parameters (11,) are those of the shared-error model; the levels are the scales of the Student-t distributions.
-    The sweeps start at the `first` weights, ones by default. Raises InputError as that model does, and for degrees of
-    freedom that are not positive.
+    Raises InputError as that model does, and for degrees of freedom that are not positive.
     """
 
     priors: RobustPriors
 
-    def __init__(
-        self,
-        survey: Survey,
-        camera: Camera,
-        priors: RobustPriors | None = None,
-        first: Weights | None = None,
-    ) -> None:
+    def __init__(self, survey: Survey, camera: Camera, priors: RobustPriors | None = None) -> None:
         priors = priors or RobustPriors()
         super().__init__(survey, camera, priors)
-        line = (self._arrays.line_view, self._points[self._arrays.line_point])
-        ones = Weighting(np.ones(survey.n_observations), np.ones(len(self._arrays.u_px)))
-        self._first = ones if first is None else Weighting(first.view, np.ascontiguousarray(first.point[line]))
         self._freedom = Freedom(priors.view_degrees_of_freedom, priors.point_degrees_of_freedom)
         for name, value in zip(("view", "point"), self._freedom, strict=True):
             if not (np.isfinite(value) and value > 0):
@@ -99,7 +83,6 @@ class RobustSharedLikelihood(SharedLikelihood):
             self._fixed,
             self._freedom,
             len(self._points),
-            self._first,
             self._prior_centre,
             self._prior_sigma,
             rows,
@@ -113,7 +96,6 @@ class RobustSharedLikelihood(SharedLikelihood):
                 self._fixed,
                 self._freedom,
                 len(self._points),
-                self._first,
                 self._prior_centre,
                 self._prior_sigma,
                 self._vector(parameters),
@@ -131,21 +113,11 @@ class RobustSharedLikelihood(SharedLikelihood):
         """The same model without tails: its optimum is near, at a tenth of the cost."""
         return SharedLikelihood(self.survey, self.camera, self.priors)
 
-    def around(self, parameters: ArrayLike) -> "RobustSharedLikelihood":
-        """The same model whose sweeps start at the weights of these parameters (11,): half as many suffice there.
-
-        Values differ within the sweeps' tolerance. Where it is undefined, there are no weights to start from.
-        """
-        try:
-            return RobustSharedLikelihood(self.survey, self.camera, self.priors, self.weights(parameters))
-        except EstimationError:
-            return self
-
     def select(self, numbers: Sequence[int]) -> "RobustSharedLikelihood":
         """The same model of these observations only."""
         return RobustSharedLikelihood(self.survey.select(numbers), self.camera, self.priors)
 
     def _weighted_marginal(self, vector: Floats) -> tuple[Marginal, Floats, Floats]:
         optics, levels = optics_at(vector, self._fixed), levels_at(vector)
-        found = robust_marginal(self._arrays, optics, levels, self._freedom, len(self._points), self._first)
+        found = robust_marginal(self._arrays, optics, levels, self._freedom, len(self._points))
         return found.marginal, found.view_weight, found.line_weight

@@ -46,13 +46,6 @@ class Freedom(NamedTuple):
     of_line: float
 
 
-class Weighting(NamedTuple):
-    """Weights of views (N,) and lines (L,)."""
-
-    of_views: Floats
-    of_lines: Floats
-
-
 class RobustMarginal(NamedTuple):
     """The bound's Gaussian part, the mean weights (N,) of views and (L,) of lines, and the weights' share of it."""
 
@@ -196,11 +189,11 @@ def weight_terms(weight: Floats, freedom: float, size: int) -> float:
 
 @njit(cache=True, error_model="numpy")
 def robust_marginal(
-    arrays: SharedArrays, optics: Optics, levels: Levels, freedom: Freedom, n_points: int, first: Weighting
+    arrays: SharedArrays, optics: Optics, levels: Levels, freedom: Freedom, n_points: int
 ) -> RobustMarginal:
-    """The bound where the weights stand still, from the `first` ones on, lines linearised anew in every sweep."""
+    """The bound where the weights stand still, lines linearised anew in every sweep."""
     n_views, n_lines = arrays.view_first.shape[0] - 1, arrays.u_px.shape[0]
-    view_weight, line_weight = first.of_views.copy(), first.of_lines.copy()
+    view_weight, line_weight = np.ones(n_views), np.ones(n_lines)
     view_square, view_slope = np.empty(n_views), np.empty(n_views)
     line_square, line_slope = np.empty(n_lines), np.empty(n_lines)
     steps, before = np.zeros(n_views + n_lines), np.zeros(n_views + n_lines)
@@ -244,7 +237,6 @@ def row_log_likelihood(
     fixed: FixedOptics,
     freedom: Freedom,
     n_points: int,
-    first: Weighting,
     centre: Floats,
     sigma: Floats,
     parameters: Floats,
@@ -252,7 +244,7 @@ def row_log_likelihood(
     """Log-likelihood bound and log-prior of one row (11,); minus infinity where the model is undefined."""
     if not (np.all(np.isfinite(parameters)) and parameters[10] > 0.0):
         return -np.inf
-    result = robust_marginal(arrays, optics_at(parameters, fixed), levels_at(parameters), freedom, n_points, first)
+    result = robust_marginal(arrays, optics_at(parameters, fixed), levels_at(parameters), freedom, n_points)
     gaussian = -0.5 * (result.marginal.chi_squared + result.marginal.log_determinant)
     value = log_prior(parameters, centre, sigma) + gaussian + result.log_weights
     return value if np.isfinite(value) else -np.inf
@@ -264,7 +256,6 @@ def rows_log_likelihood(
     fixed: FixedOptics,
     freedom: Freedom,
     n_points: int,
-    first: Weighting,
     centre: Floats,
     sigma: Floats,
     rows: Floats,
@@ -272,5 +263,5 @@ def rows_log_likelihood(
     """`row_log_likelihood` of each row (K, 11), one thread a row: the same numbers on any number of threads."""
     values = np.empty(rows.shape[0])
     for row in prange(rows.shape[0]):
-        values[row] = row_log_likelihood(arrays, fixed, freedom, n_points, first, centre, sigma, rows[row])
+        values[row] = row_log_likelihood(arrays, fixed, freedom, n_points, centre, sigma, rows[row])
     return values

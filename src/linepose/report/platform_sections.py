@@ -4,13 +4,17 @@ from collections.abc import Callable
 from typing import Final
 
 from linepose.figures.results import PlatformResults
+from linepose.report.clocks import clocks_section
+from linepose.report.decided import decided_section
 from linepose.report.dependence import dependence_section
 from linepose.report.noise_models import noise_models_section
 from linepose.report.sections import SectionOnPage
 
 _SECTIONS: Final[tuple[Callable[[PlatformResults], SectionOnPage | None], ...]] = (
+    decided_section,
     noise_models_section,
     dependence_section,
+    clocks_section,
 )
 
 

@@ -44,7 +44,7 @@ def published_sections(regression: pd.DataFrame, tables: Mapping[str, pd.DataFra
 
 def _platform_section(platform: str, rows: pd.DataFrame) -> SectionOnPage:
     tables = [
-        _table(f"published-{platform}-{number}", str(source), f"{_told(part)}", part, "what")
+        _table(f"published-{platform}-{number}", str(source), f"{_told(part)}{_remarks(part)}", part, "what")
         for number, (source, part) in enumerate(rows.groupby("source", sort=False))
     ]
     return SectionOnPage(f"published-{platform}", platform, _told(rows), tables)
@@ -56,6 +56,12 @@ def _told(rows: pd.DataFrame) -> str:
     told = f"{int(rows['passed'].sum())} of {len(rows)} reproduced within the tolerance"
     told += f", {known} known to deviate" if known else ""
     return told + (f", {unknown} not reproduced." if unknown else ".")
+
+
+def _remarks(rows: pd.DataFrame) -> str:
+    """What the notes of the numbers that passed say, each once, as sentences with a space before each."""
+    notes = dict.fromkeys(note for note in rows.loc[rows["passed"], "note"] if note)
+    return "".join(f" {note[:1].upper()}{note[1:]}." for note in notes)
 
 
 def _table(

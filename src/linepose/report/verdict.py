@@ -5,9 +5,11 @@ Only decisions stand here; the numbers they rest on come in as `Evidence`.
 
 from dataclasses import dataclass
 from enum import IntEnum
+from math import isnan
 from typing import Final
 
 from linepose.diagnostics import MAXIMUM_R_HAT, MINIMUM_STEPS_PER_TIME
+from linepose.likelihood.names import PUBLISHED, sampling_section
 
 CONSISTENT: Final = (0.5, 1.5)  # reduced chi-square of errors that are about as large as their sigmas
 ALIKE_IN_A_VIEW: Final = (
@@ -56,6 +58,7 @@ class Evidence:
     influence: float | None = None
     truth_sigmas: float | None = None
     truth_parameter: str = ""
+    noise_model: str = PUBLISHED
 
 
 @dataclass(frozen=True)
@@ -139,7 +142,7 @@ def chain_length(evidence: Evidence) -> Check:
         Level.CARE,
         f"Chain too short: {found} The rule is {MINIMUM_STEPS_PER_TIME} autocorrelation times and an R-hat below "
         f"{MAXIMUM_R_HAT}. The pose is not affected, its sampled sigmas are rough.",
-        f"Set sampling.n_steps to {steps} or more and run again.",
+        f"Set {sampling_section(evidence.noise_model)}.n_steps to {steps} or more and run again.",
         f"the chain has {evidence.n_steps} steps where {steps} are needed",
     )
 
@@ -169,11 +172,16 @@ def residual_size(evidence: Evidence) -> Check:
 
 
 def independence(evidence: Evidence) -> Check:
-    """Whether the points of a view err independently, as the published likelihood takes them to."""
+    """Whether the points of a view err independently, where the noise model takes them to."""
+    if isnan(evidence.alike_in_a_view):
+        return Check("Independence within a view", Level.GOOD, "Not known: it takes two observations of two points.")
     share = 100 * max(evidence.alike_in_a_view, 0.0)
     found = f"{share:.0f} % of the residuals' variance is common to all points of a view."
     if evidence.alike_in_a_view <= ALIKE_IN_A_VIEW:
         return Check("Independence within a view", Level.GOOD, found)
+    if evidence.noise_model != PUBLISHED:
+        told = f"{found} The {evidence.noise_model} noise model infers how much, and its sigmas allow for it."
+        return Check("Independence within a view", Level.GOOD, told)
     if evidence.sigma_factor is not None and evidence.sigma_factor <= SIGMA_FACTOR:
         return Check(
             "Independence within a view",
@@ -185,7 +193,8 @@ def independence(evidence: Evidence) -> Check:
         "Independence within a view",
         Level.CARE,
         f"{found} The published noise model takes points as independent, so its sigmas come out too small.",
-        "Read the sigmas as lower bounds; more observations help, more points in a view do not.",
+        "Set noise_model: shared in the platform's file, which allows for it; more observations help, more points in a "
+        "view do not.",
         f"{share:.0f} % of the errors' variance is common to a whole view",
     )
 

@@ -22,8 +22,8 @@ _PARAMETERS: Final = {POSITION: 3, ROTATION: 3, POSE: 6}  # that each whole is m
 _MISSED_AT_MOST: Final = 0.05
 _REQUIRED: Final = "simulated; required, not published"
 _CORRELATED: Final = (
-    "simulated; the likelihood takes the points of a view as independent, their navigation errors are alike: "
-    "its sigmas are too small"
+    "simulated; the likelihood takes the points of a view as independent, where their navigation errors are alike: "
+    "its sigmas come out too small for errors as large as the reported ones"
 )
 
 

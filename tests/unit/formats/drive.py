@@ -1,6 +1,7 @@
 """A drive with a known pose, as its navigation system sees it: latitude, longitude, height, angles about true north."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -20,36 +21,36 @@ class Drive:
     euler_rad: np.ndarray
     covariance: np.ndarray
 
-    @property
+    @cached_property
     def geodetic(self):
         """Latitude, longitude (deg), height (m); (K, 3)."""
         origin = np.array(ORIGIN)
         return geodesy.geodetic_of(geodesy.ecef(origin) + self.position_m @ geodesy.axes(origin).T)
 
-    @property
+    @cached_property
     def turn(self):
         """From the axes at ORIGIN to those at each place; (K, 3, 3)."""
         return np.swapaxes(geodesy.axes(self.geodetic), -1, -2) @ geodesy.axes(np.array(ORIGIN))
 
-    @property
+    @cached_property
     def true_matrix(self):
         """Body (x forward, y right, z down) to true north, east, down; (K, 3, 3)."""
         return self.turn @ Rotation.from_euler("ZYX", self.euler_rad[:, ::-1]).as_matrix()
 
-    @property
+    @cached_property
     def true_euler(self):
         """Roll, pitch, heading (rad) about true north; (K, 3)."""
         return Rotation.from_matrix(self.true_matrix).as_euler("ZYX")[:, ::-1]
 
-    @property
+    @cached_property
     def week(self):
         return self.gps_us // WEEK_1980_US
 
-    @property
+    @cached_property
     def second(self):
         return (self.gps_us % WEEK_1980_US) / 1e6
 
-    @property
+    @cached_property
     def gps_us(self):
         """GPS time since 1980-01-06: 17 leap seconds ahead of UTC from July 2015 to 2016, when the drive was."""
         return self.time_us - 315_964_800_000_000 + 17_000_000

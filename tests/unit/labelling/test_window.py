@@ -1,5 +1,11 @@
 """The window under a backend without a display, driven by the events that a mouse and a keyboard send."""
 
+import os
+import shutil
+import subprocess
+import sys
+
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.backend_bases import KeyEvent, MouseButton, MouseEvent, NavigationToolbar2
@@ -198,6 +204,7 @@ def test_labels_must_be_our_csv(mouse, tmp_path):
 
 
 def test_without_a_display_it_says_what_to_do(mouse, tmp_path, monkeypatch):
+    plt.switch_backend("agg")
     monkeypatch.setattr("matplotlib.pyplot.show", lambda **_: pytest.fail("nobody could close it"))
     with pytest.raises(
         InputError, match=r"found no display, or no toolkit for windows.*install the extra linepose\[wind"
@@ -208,3 +215,94 @@ def test_without_a_display_it_says_what_to_do(mouse, tmp_path, monkeypatch):
         label_platform(tmp_path, source)
     with pytest.raises(InputError, match=r"found no file, expected one scan an observation"):
         label_platform(tmp_path / "none", source)
+
+
+@pytest.mark.skipif(shutil.which("Xvfb") is None, reason="no virtual display")
+def test_a_real_window_under_a_virtual_display(mouse, tmp_path):
+    """Tk's own events: two clicks, one of them undone by the key; the toolbar's zoom takes a third; then q closes."""
+    pytest.importorskip("tkinter")
+    (tmp_path / "person.py").write_text(PERSON)
+    read_end, write_end = os.pipe()
+    screen = ["Xvfb", "-displayfd", str(write_end), "-screen", "0", "1600x1200x24", "-nolisten", "tcp"]
+    with subprocess.Popen(screen, pass_fds=[write_end], stderr=subprocess.DEVNULL) as server:
+        try:
+            os.close(write_end)
+            display = os.read(read_end, 16).decode().strip()
+            places = [f"{one}" for point in (0, 1) for one in mouse.truth[1][point]]
+            run = subprocess.run(
+                [sys.executable, str(tmp_path / "person.py"), str(mouse.scans[1]), str(mouse.path), *places],
+                env=os.environ | {"DISPLAY": f":{display}", "MPLBACKEND": "TkAgg"},
+                capture_output=True,
+                text=True,
+                timeout=120,
+                check=False,
+            )
+        finally:
+            server.terminate()
+            os.close(read_end)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.split() == ["1", "1", "2", "1", "0"]
+    assert set(mouse.saved()) == {(1, 0)}
+    np.testing.assert_allclose(mouse.saved()[1, 0], mouse.truth[1][0], atol=0.1)
+
+
+PERSON = """
+import itertools
+import sys
+import time
+from pathlib import Path
+
+from matplotlib import pyplot as plt
+
+from linepose.labelling import label
+
+scan, labels, *places = sys.argv[1:]
+u0, line0, u1, line1 = (float(one) for one in places)
+show, seconds = plt.show, itertools.count(1)
+
+
+def count():
+    print(len(Path(labels).read_text().splitlines()) - 1 if Path(labels).exists() else 0)
+
+
+def act(**keys):
+    canvas = plt.gcf().canvas
+    widget, axes = canvas.get_tk_widget(), plt.gcf().axes[0]
+
+    def click(u, line):
+        x, y = axes.transData.transform((u, line))
+        height = canvas.figure.bbox.height
+        later = next(seconds) * 1000  # ms: else Tk takes two clicks in one place for a double one
+        for kind in ("Button-1", "ButtonRelease-1"):
+            widget.event_generate(f"<{kind}>", x=round(x), y=round(height - y), time=later)
+        widget.update()
+
+    def key(name):
+        widget.focus_force()
+        widget.event_generate(f"<Key-{name}>")
+        widget.update()
+
+    def person():
+        for _ in range(20):  # until the window has its size
+            widget.update()
+            time.sleep(0.05)
+        click(u0, line0)
+        count()
+        canvas.toolbar.zoom()
+        click(u1, line1)
+        count()
+        canvas.toolbar.zoom()
+        click(u1, line1)
+        count()
+        key("u")
+        count()
+        key("q")
+        print(len(plt.get_fignums()))
+
+    widget.after(500, person)
+    show(**keys)
+
+
+plt.show = act
+label({1: Path(scan)}, Path(labels))
+"""

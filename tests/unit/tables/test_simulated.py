@@ -154,7 +154,7 @@ def test_error_beyond_its_own_sigmas_is_shown_and_explained(errors):
     rows = {row["quantity"]: row for row in truth_rows("robot", PUBLISHED, table)}
     beyond = rows["robot, error against truth in sigmas, r_x_m"]
     assert (beyond["passed"], beyond["known_deviation"], beyond["obtained"]) == (False, True, -4.0)
-    assert "sigmas are too small" in beyond["note"]
+    assert "sigmas come out too small" in beyond["note"]
     assert rows["robot, error against truth, r_x_m"]["passed"]
     assert not rows["robot, error against truth in sigmas, r_y_m"]["known_deviation"]
     limits = [
