@@ -92,7 +92,7 @@ def short_log(root):
 
 
 PLANTED = {
-    in_gps_time: (Level.ERROR, "conventions", "GPS", "GPS|leap|clock"),
+    in_gps_time: (Level.ERROR, "conventions", "GPS", "subtract 18 s"),
     other_width: (Level.ERROR, "scans", "648 pixels a line, camera.n_pixels is 640", "n_pixels: 648"),
     cut_picture: (Level.ERROR, "scans", "observation-03.bil.*truncated", "restore"),
     no_stamps: (Level.ERROR, "scans", "observation-02-times.csv", "beside the scan"),
