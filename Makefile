@@ -5,10 +5,12 @@ CORES ?= 2
 BIN := .venv/bin
 STAMP := .venv/installed
 
-.PHONY: help reproduce test check bench reference images lock clean
+SHELL := bash
+
+.PHONY: help reproduce test check bench readme-bench reference images lock clean
 
 help: ## What can be made
-	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 $(STAMP): pyproject.toml requirements.lock
 	$(PYTHON) -m venv .venv
@@ -30,13 +32,17 @@ check: $(STAMP) ## Style, types and the workflow's own lint
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 
 bench: $(STAMP) ## Measure speed on this machine
-	for benchmark in benchmarks/*.py; do $(BIN)/python $$benchmark || exit 1; echo; done
+	@for name in machine likelihood pipeline experiments workflow scans shared; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
+
+readme-bench: $(STAMP) ## Measure speed and put the figures into README.md; on a machine that does nothing else
+	set -o pipefail; $(MAKE) --silent bench | $(BIN)/python benchmarks/into_readme.py
 
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
 	$(BIN)/python -m linepose.config.reference
 
-images: $(STAMP) ## Take the README's pictures from results/ladybird/figures
+images: $(STAMP) ## Make the pictures of README and docs, from results/
 	$(BIN)/python -m linepose.report.pictures
+	$(BIN)/python -m linepose.figures.conventions
 
 lock: ## Take the newest versions that fit pyproject.toml into requirements.lock
 	rm -rf .venv-lock

@@ -19,8 +19,10 @@ include: "workflow/rules/wanted.smk"
 include: "workflow/rules/fetch.smk"
 include: "workflow/rules/compile.smk"
 include: "workflow/rules/check_data.smk"
+include: "workflow/rules/check_readable.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/extract.smk"
+include: "workflow/rules/measure_extraction.smk"
 include: "workflow/rules/associate.smk"
 include: "workflow/rules/reject_outliers.smk"
 include: "workflow/rules/optimise.smk"
@@ -36,6 +38,10 @@ include: "workflow/rules/basin.smk"
 include: "workflow/rules/basin_summary.smk"
 include: "workflow/rules/mapping.smk"
 include: "workflow/rules/sensitivity.smk"
+include: "workflow/rules/noise_models.smk"
+include: "workflow/rules/consistency.smk"
+include: "workflow/rules/prior.smk"
+include: "workflow/rules/clock_offset.smk"
 include: "workflow/rules/experiments.smk"
 include: "workflow/rules/truth_error.smk"
 include: "workflow/rules/coverage.smk"
@@ -48,11 +54,6 @@ include: "workflow/rules/report.smk"
 rule all:
     default_target: True
     input:
-        expand("results/{platform}/pose.parquet", platform=PLATFORMS),
-        expand("results/{platform}/diagnostics.parquet", platform=PLATFORMS),
-        rules.experiments.input,
-        rules.published_tables.output if COMPARED else [],
-        expand("results/{platform}/truth_error.parquet", platform=PROJECT.simulated),
-        "results/regression.parquet",
+        [file for platform in PLATFORMS for file in results_of(platform)],
         "results/report.html",
         "results/logs/regression.passed",

@@ -57,7 +57,8 @@ def main() -> None:
     likelihood.log_likelihood(pose)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     share = kernel_share(Sweep(likelihood, pose, covariance, BasinGrid(n_distances=4, n_angles=5), 1), range(20))
-    print(f"{cores} cores; the kernel has {100 * share:.0f} % of the time of Powell's method, to reach 80 %\n")
+    print(f"Experiments on the 16 inliers; {cores} cores, wall time")
+    print(f"(the kernel has {100 * share:.0f} % of the basin's processor time with Powell's method, to reach: 80 %)\n")
     line("", "runs", "seconds", "ms each", "to reach, s")
     with tempfile.TemporaryDirectory() as folder:
         ranges = batch_ranges(200, 10)

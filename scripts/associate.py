@@ -5,25 +5,16 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.config.platform import Platform, ScansSection
-    from linepose.navigation import associate_covariances, median_sigma_table, read_covariances
-    from linepose.navigation_log import POSE_AT, associate_poses, read_navigation_log
-    from linepose.observations import check_determined, survey_from_table
-    from linepose.pose import N_PARAMETERS
-    from linepose.result_schemas import NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS
+    from linepose.config.platform import LabelledViewsSection, Platform
+    from linepose.navigation import median_sigma_table
+    from linepose.recorded import map_frame_table, read_reported, with_navigation
+    from linepose.result_schemas import MAP_FRAME, NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS
     from linepose.storage import read_table, write_table
 
-    platform = Platform.model_validate(snakemake.params.platform)
-    navigation, source, folder = platform.navigation, platform.source, Path(snakemake.params.folder)
-    if isinstance(source, ScansSection):
-        raw_log = read_navigation_log(folder / source.navigation)
-        points = read_table(snakemake.input[0], SCAN_POINTS).drop(columns="line")
-        points = associate_poses(points, raw_log, POSE_AT[navigation.association], navigation.maximum_pose_gap_s)
-    else:
-        points = read_table(snakemake.input[0], POINTS)
-    covariances = read_covariances(folder / source.covariances, navigation.covariance_columns)
-    observations = associate_covariances(points, covariances, navigation.maximum_gap_s)
-    check_determined(survey_from_table(observations), N_PARAMETERS)
+    platform, folder = Platform.model_validate(snakemake.params.platform), Path(snakemake.params.folder)
+    schema = POINTS if isinstance(platform.source, LabelledViewsSection) else SCAN_POINTS
+    observations = with_navigation(read_table(snakemake.input[0], schema), platform, folder)
     write_table(observations, snakemake.output.observations, OBSERVATIONS)
-    write_table(median_sigma_table(covariances), snakemake.output.sigma, NAVIGATION_SIGMA)
+    write_table(median_sigma_table(read_reported(platform, folder)), snakemake.output.sigma, NAVIGATION_SIGMA)
+    write_table(map_frame_table(platform, folder), snakemake.output.frame, MAP_FRAME)
     log.info("largest gap to a covariance: %.3f s", observations["nav_gap_s"].max())

@@ -7,20 +7,20 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
+    from linepose.config.study import sampling_settings
     from linepose.diagnostics import diagnose_samples
-    from linepose.pose import POSE_COLUMNS
     from linepose.result_schemas import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
-    from linepose.stages import diagnostics_table, pose_table, samples_from_table
+    from linepose.sampling import section_of
+    from linepose.stages import diagnostics_table, estimated_parameters, pose_table, samples_from_table
     from linepose.storage import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     optima = read_table(snakemake.input.optima, OPTIMA)
-    chains = {
-        name: diagnose_samples(
-            samples_from_table(read_table(Path(snakemake.input.samples) / f"{name}.parquet", SAMPLES), POSE_COLUMNS)
-        )
-        for name in optima["stage"]
-    }
+    names, section = estimated_parameters(optima), section_of(sampling_settings(snakemake.params.sampling))
+    chains = {}
+    for name in optima["stage"]:
+        table = read_table(Path(snakemake.input.samples) / f"{name}.parquet", SAMPLES)
+        chains[name] = diagnose_samples(samples_from_table(table, names), section)
     write_table(diagnostics_table(optima, chains), snakemake.output.diagnostics, DIAGNOSTICS)
     sigma = np.sqrt(np.diag(platform.start_covariance()))
     poses = pose_table(optima, {name: chain.sigma for name, chain in chains.items()}, platform.start_pose(), sigma)

@@ -6,25 +6,13 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import LabelledViewsSection, Platform
-    from linepose.extraction.labelled_views import read_labelled_views, select_views
-    from linepose.extraction.labels import read_labels
-    from linepose.extraction.refine import METHODS
-    from linepose.extraction.scan_survey import detected_points, refined_points, select_scans
+    from linepose.recorded import read_points
     from linepose.result_schemas import POINTS, SCAN_POINTS
     from linepose.storage import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     folder = Path(snakemake.params.folder)
-    source, n_pixels = platform.source, platform.camera.n_pixels
-    if isinstance(source, LabelledViewsSection):
-        views = select_views(folder, source.views, source.first, source.step)
-        points, schema = read_labelled_views(views, n_pixels), POINTS
-    else:
-        scans, refine = select_scans(folder, source.scans, source.left_out), METHODS[source.refinement]
-        schema = SCAN_POINTS
-        if source.points == "detection":
-            points = detected_points(scans, refine, n_pixels)
-        else:
-            points = refined_points(scans, read_labels(folder / source.labels, list(scans)), refine, n_pixels)
+    points = read_points(platform, folder)
+    schema = POINTS if isinstance(platform.source, LabelledViewsSection) else SCAN_POINTS
     write_table(points, snakemake.output[0], schema)
     log.info("%d points in %d views of %s", len(points), points["observation"].nunique(), folder)

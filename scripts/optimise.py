@@ -8,16 +8,18 @@ with stage(snakemake) as log:
     from linepose.likelihood.models import likelihood_of
     from linepose.observations import survey_from_table
     from linepose.outliers import stage_observations
-    from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, with_parameters
+    from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, laplace_sigma_columns, with_parameters
     from linepose.stages import optimise_stages
     from linepose.storage import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     search = SearchSection.model_validate(snakemake.params.search).settings()
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
+    names = likelihood.parameter_names[6:]
+    schema = with_parameters(OPTIMA, [*names, *laplace_sigma_columns(names)])
     optima = optimise_stages(likelihood, stages, platform.start_pose(), search)
-    write_table(optima, snakemake.output[0], with_parameters(OPTIMA, likelihood.parameter_names[6:]))
+    write_table(optima, snakemake.output[0], schema)
     for _, optimum in optima.iterrows():
         log.info("%s: -log L %.6f", optimum["stage"], optimum["neg_log_likelihood"])

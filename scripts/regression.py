@@ -9,10 +9,19 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
     from linepose.experiment_schemas import BASIN_SUMMARY, REPEATABILITY, SUBSETS
-    from linepose.result_schemas import NAVIGATION_SIGMA, OUTLIERS, POSE, REGRESSION, TRUTH_ERROR
+    from linepose.result_schemas import (
+        DETECTION,
+        EXTRACTION_ACCURACY,
+        NAVIGATION_SIGMA,
+        OUTLIERS,
+        POSE,
+        REGRESSION,
+        TRUTH_ERROR,
+    )
     from linepose.storage import read_table, write_csv, write_table
     from linepose.tables.experiments_regression import BASIN_ROWS_OF, table_rows
     from linepose.tables.regression import PlatformResults, regression_table
+    from linepose.tables.simulated import extraction_rows
 
     published_as = snakemake.params.published_as
     files = zip(published_as, snakemake.input.pose, snakemake.input.outliers, snakemake.input.sigma, strict=True)
@@ -33,6 +42,11 @@ with stage(snakemake) as log:
         rows += table_rows(name, published, read_table(subsets, SUBSETS), read_table(pairs, REPEATABILITY))
     for name, summary in zip(snakemake.params.swept, snakemake.input.basin, strict=True):
         rows += BASIN_ROWS_OF[published_as[name]](name, published, read_table(summary, BASIN_SUMMARY))
+    measured = zip(snakemake.params.on_truth.items(), snakemake.input.accuracy, snakemake.input.detection, strict=True)
+    for (name, sigma_px), accuracy, detection in measured:
+        rows += extraction_rows(
+            name, read_table(accuracy, EXTRACTION_ACCURACY), read_table(detection, DETECTION), sigma_px
+        )
     stages = regression_table(published, results, published_as)
     table = pd.concat([stages, pd.DataFrame(rows, columns=stages.columns)], ignore_index=True)
     write_table(table, snakemake.output.parquet, REGRESSION)

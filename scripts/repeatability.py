@@ -5,7 +5,7 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
-    from linepose.config.study import SamplingSection, SearchSection
+    from linepose.config.study import SearchSection, sampling_settings
     from linepose.experiment_schemas import REPEATABILITY
     from linepose.experiments.accepted import read_accepted
     from linepose.experiments.repeatability import compare_subsets
@@ -14,7 +14,7 @@ with stage(snakemake) as log:
     platform = Platform.model_validate(snakemake.params.platform)
     settings = RepeatabilitySection.model_validate(snakemake.params.repeatability)
     search = SearchSection.model_validate(snakemake.params.search).settings()
-    sampling = SamplingSection.model_validate(snakemake.params.sampling).settings()
+    sampling = sampling_settings(snakemake.params.sampling)
     data = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers)
     pair = {"subset_1": settings.first, "subset_2": settings.second}
     place = f"{snakemake.params.file}: experiments.repeatability"

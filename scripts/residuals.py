@@ -13,7 +13,7 @@ with stage(snakemake) as log:
 
     platform = Platform.model_validate(snakemake.params.platform)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
     kept = {name: stages[name] for name in ("all", "inliers")}
     optima = read_table(snakemake.input.optima, OPTIMA).set_index("stage")[list(likelihood.parameter_names)]

@@ -6,7 +6,7 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.study import SamplingSection
+    from linepose.config.study import sampling_settings
     from linepose.likelihood.models import likelihood_of
     from linepose.observations import survey_from_table
     from linepose.outliers import stage_observations
@@ -17,9 +17,9 @@ with stage(snakemake) as log:
     from linepose.storage import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
-    settings = SamplingSection.model_validate(snakemake.params.sampling).settings()
+    settings = sampling_settings(snakemake.params.sampling)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
     names = likelihood.parameter_names
     optima = read_table(snakemake.input.optima, OPTIMA).set_index("stage")[list(names)]

@@ -9,18 +9,22 @@ with stage(snakemake) as log:
     from linepose.experiments.accepted import read_accepted
     from linepose.experiments.sensitivity import camera_changes, sensitivity
     from linepose.likelihood.models import likelihood_of
+    from linepose.likelihood.names import PUBLISHED
     from linepose.likelihood.pixels import PixelLikelihood
     from linepose.storage import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     search = SearchSection.model_validate(snakemake.params.search).settings()
     nominal = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers).accepted
-    changes = {"residual in pixels": PixelLikelihood(nominal)}
+    changes = {}
+    if platform.noise_model == PUBLISHED:  # the other models' residuals are in pixels
+        changes["residual in pixels"] = PixelLikelihood(nominal)
     for name, camera in camera_changes(platform.intrinsics()).items():
-        changes[name] = likelihood_of(platform.noise_model, nominal.survey, camera)
+        changes[name] = likelihood_of(platform.noise_model, nominal.survey, camera, platform.pose_prior())
     files = zip(snakemake.input.other_observations, snakemake.input.other_outliers, strict=True)
     for (name, other), (observations, outliers) in zip(snakemake.params.others.items(), files, strict=True):
-        changes[name] = read_accepted(Platform.model_validate(other), observations, outliers).accepted
+        alike = Platform.model_validate(other | {"noise_model": platform.noise_model})
+        changes[name] = read_accepted(alike, observations, outliers).accepted
     table = sensitivity(nominal, changes, platform.start_pose(), search)
     write_table(table, snakemake.output[0], SENSITIVITY)
     for _, row in table.iterrows():

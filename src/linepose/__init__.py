@@ -1,1 +1,41 @@
-"""linepose: the pose of a line-scan camera on a vehicle, and how sure it is."""
+"""linepose: the pose of a line-scan camera on a vehicle, and how sure it is.
+
+The names below are imported when they are first used, so that `import linepose` costs nothing.
+"""
+
+from importlib import import_module
+from typing import Any
+
+_HOMES = {
+    "Camera": "camera",
+    "CameraSigmas": "camera",
+    "Calibration": "calibrated",
+    "HandMeasured": "calibrated",
+    "CalibrationSettings": "calibration",
+    "calibrate": "calibration",
+    "calibrate_platform": "api",
+    "load_observations": "api",
+    "load_platform_file": "api",
+    "observations_from_arrays": "api",
+    "check_platform": "check.platform",
+    "SamplingSettings": "sampling",
+    "IndependenceSettings": "sampling",
+    "Search": "optimise",
+    "LineposeError": "errors",
+    "InputError": "errors",
+    "EstimationError": "errors",
+}
+
+__all__ = sorted(_HOMES)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

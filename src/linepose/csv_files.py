@@ -40,8 +40,11 @@ def read_numbers(path: Path, n_columns: int, what: str) -> tuple[np.ndarray[tupl
     return first, others
 
 
-def check_microseconds(time_us: np.ndarray[tuple[int], np.dtype[np.int64]], path: Path) -> None:
-    """Raise InputError where times are not microseconds since 1970 between 1980 and 2100."""
+def check_microseconds(time_us: np.ndarray[tuple[int], np.dtype[np.int64]], path: Path, first_row: int = 1) -> None:
+    """Raise InputError where times are not microseconds since 1970 between 1980 and 2100.
+
+    `first_row` is the file's row that holds the first of them.
+    """
     wrong = np.flatnonzero((time_us < 315_964_800_000_000) | (time_us > 4_102_444_800_000_000))
     if wrong.size:
         row, time = int(wrong[0]), int(time_us[wrong[0]])
@@ -53,7 +56,9 @@ def check_microseconds(time_us: np.ndarray[tuple[int], np.dtype[np.int64]], path
             ),
             "write microseconds since 1970",
         )
-        raise InputError(f"{path}, row {row + 1}, column 1", f"time {time}", "microseconds since 1970-01-01", guess)
+        raise InputError(
+            f"{path}, row {row + first_row}, column 1", f"time {time}", "microseconds since 1970-01-01", guess
+        )
 
 
 _OTHER_UNITS = (

@@ -8,7 +8,9 @@ from typing import Final
 import pyarrow as pa
 
 from linepose.experiments.basin import START_COLUMNS
+from linepose.experiments.clock_offset import CORRELATION_COLUMNS
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
+from linepose.experiments.noise_models import EXTRA_PARAMETERS, LEVEL_COLUMNS
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.result_schemas import flags, floats, texts, whole_numbers
 
@@ -71,6 +73,50 @@ MAPPING_SUMMARY: Final = pa.schema(
         *floats("normal_north", "normal_east", "normal_down", "plane_rms_mm", "equation_26_angle_rad"),
     ]
 )
+NOISE_MODELS: Final = pa.schema(
+    [
+        *texts("noise_model", "set"),
+        *_estimate(),
+        *_optional(*EXTRA_PARAMETERS, *LEVEL_COLUMNS),
+        *floats("effective_sample_size", "split_r_hat"),
+        *texts("warning"),
+        *floats("distance_m", "angle_rad", "mahalanobis"),
+        *_optional("position_error_m", "rotation_error_rad", "error_in_sigmas"),
+    ]
+)
+IDENTIFIABILITY: Final = pa.schema(
+    [
+        *texts("parameter"),
+        *floats("prior_sigma", "posterior_sigma", "shrinkage", "weakest_direction", "weakest_shrinkage"),
+        *texts("weakest_in_words"),
+    ]
+)
+WEIGHTS: Final = pa.schema(
+    [*whole_numbers("observation", "point"), *floats("view_weight", "point_weight"), *flags("removed")]
+)
+CONSISTENCY: Final = pa.schema(
+    [
+        *texts("noise_model", "comparison"),
+        *whole_numbers("split"),
+        *_estimate("_1"),
+        *_estimate("_2"),
+        *_AGREEMENT,
+    ]
+)
+CONSISTENCY_SUMMARY: Final = pa.schema(
+    [
+        *texts("noise_model", "comparison"),
+        *whole_numbers("n_splits", "n_open"),
+        *_optional(
+            "median_distance",
+            "sigma_factor",
+            "share_beyond_68",
+            "share_beyond_95",
+            "kolmogorov",
+            "largest_distance",
+        ),
+    ]
+)
 SENSITIVITY: Final = pa.schema([*texts("change"), *_estimate(), *_AGREEMENT[:2], *_optional("mahalanobis")])
 PUBLISHED_NAVIGATION: Final = pa.schema(
     [*texts("platform", "quantity"), *floats("published", "obtained", "relative_difference")]
@@ -80,5 +126,26 @@ PUBLISHED_POSES: Final = pa.schema(
         *texts("platform", "set", "parameter"),
         *floats("published", "obtained", "difference_sigmas", "published_sigma", "obtained_sigma"),
         *texts("note"),
+    ]
+)
+PRIOR: Final = pa.schema(
+    [
+        *texts("parameter"),
+        *floats("difference", "sigma", "prior_sigma", "data_weight"),
+        *flags("prior_counted_in"),
+        *texts("decided_by"),
+    ]
+)
+CLOCK_OFFSET: Final = pa.schema(
+    [
+        *whole_numbers("n_observations"),
+        *texts("observations"),
+        *floats("offset_s", "sigma_s", "sampled_sigma_s"),
+        *_optional("laplace_sigma_s", "jackknife_sigma_s"),
+        *floats("maximum_s", "shrinkage", "correlation_pose", *CORRELATION_COLUMNS),
+        *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
+        *floats(*(f"{name}_without" for name in (*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood")), "mahalanobis"),
+        *flags("told_apart"),
+        *texts("verdict", "advice"),
     ]
 )

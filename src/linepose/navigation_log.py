@@ -25,11 +25,15 @@ _FEWEST_ROWS: Final = 2
 
 @dataclass(frozen=True)
 class NavigationLog:
-    """Body poses: time_us (K,) increasing, position_m (K, 3) north, east, down, euler_rad (K, 3) roll, pitch, yaw."""
+    """Body poses: time_us (K,) increasing, position_m (K, 3) north, east, down, euler_rad (K, 3) roll, pitch, yaw.
+
+    `source` names where they come from, for messages.
+    """
 
     time_us: NDArray[np.int64]
     position_m: Floats
     euler_rad: Floats
+    source: str = "navigation"
 
 
 PoseAt = Callable[[NavigationLog, NDArray[np.int64]], tuple[Floats, Floats]]
@@ -51,7 +55,7 @@ def read_navigation_log(path: Path) -> NavigationLog:
     position = np.stack([table[name].to_numpy() for name in POSITION_COLUMNS], axis=-1)
     euler = np.stack([table[name].to_numpy() for name in EULER_COLUMNS], axis=-1)
     _check_values(path, np.hstack([position, euler]))
-    return NavigationLog(time_us, position, euler)
+    return NavigationLog(time_us, position, euler, str(path))
 
 
 def _read_columns(path: Path) -> pa.Table:
@@ -122,20 +126,20 @@ def _neighbours(log: NavigationLog, time_us: NDArray[np.int64]) -> tuple[NDArray
 def associate_poses(points: pd.DataFrame, log: NavigationLog, pose_at: PoseAt, maximum_gap_s: float) -> pd.DataFrame:
     """The points with the body pose at their times: columns of position and Euler angles added.
 
-    Raises InputError naming the observation that lies outside the log or in a gap of it longer than `maximum_gap_s`.
+    Raises InputError naming the log, and the observation outside it or in a gap of it longer than `maximum_gap_s`.
     """
     time_us = points["time_us"].to_numpy()
     outside = np.flatnonzero((time_us < log.time_us[0]) | (time_us > log.time_us[-1]))
     if outside.size:
         remedy = "complete the navigation log, or correct the clocks"
         expected = f"a time within the navigation log ({log.time_us[0]} to {log.time_us[-1]})"
-        raise InputError(_place(points, outside[0]), f"time {time_us[outside[0]]}", expected, remedy)
+        raise InputError(_place(log, points, outside[0]), f"time {time_us[outside[0]]}", expected, remedy)
     before, after = _neighbours(log, time_us)
     gap_s = (log.time_us[after] - log.time_us[before]) / 1e6
     if gap_s.max() > maximum_gap_s:
         worst = int(gap_s.argmax())
         raise InputError(
-            _place(points, worst),
+            _place(log, points, worst),
             f"a gap of {gap_s[worst]:.3f} s in the navigation log around its time",
             f"at most {maximum_gap_s:g} s",
             "complete the log, leave the observation out, or raise navigation.maximum_pose_gap_s",
@@ -145,6 +149,6 @@ def associate_poses(points: pd.DataFrame, log: NavigationLog, pose_at: PoseAt, m
     return points.assign(**columns)
 
 
-def _place(points: pd.DataFrame, row: int) -> str:
+def _place(log: NavigationLog, points: pd.DataFrame, row: int) -> str:
     point = points.iloc[row]
-    return f"observation {point['observation']:g}, point {point['point']:g}"
+    return f"{log.source}: observation {point['observation']:g}, point {point['point']:g}"

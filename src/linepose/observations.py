@@ -128,14 +128,17 @@ def table_from_survey(survey: Survey) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def check_determined(survey: Survey, n_parameters: int) -> None:
-    """Raise InputError where the views are too few for the pose: 2 equations a view of a point, 3 unknowns a point."""
+def check_determined(survey: Survey, n_parameters: int, place: str = "observations") -> None:
+    """Raise InputError, naming `place`, where the views are too few for the pose.
+
+    Each view of a point gives 2 equations, each point takes 3 unknowns.
+    """
     views = np.isfinite(survey.u_px).sum(axis=0)
     used = views[views >= _RAYS_PER_POINT]
     spare = int(2 * used.sum() - 3 * len(used))
     if spare < n_parameters:
         raise InputError(
-            "observations",
+            place,
             f"{spare} spare equations ({survey.n_observations} observations, {len(used)} points in two or more)",
             f"at least {n_parameters}",
             "add observations, or label more points",

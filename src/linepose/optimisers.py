@@ -3,9 +3,12 @@
 from collections.abc import Callable
 from typing import Final
 
+import numpy as np
+
 from linepose.errors import InputError
 from linepose.likelihood.base import Likelihood
-from linepose.optimise import Optimum, Search, optimise
+from linepose.optimise import Optimum, Search, optimise, optimise_within
+from linepose.pose import N_PARAMETERS, check_pose
 from linepose.rotations import Floats
 from linepose.wide_search import search_widely
 
@@ -15,9 +18,15 @@ Optimiser = Callable[[Likelihood, Floats, Search], Optimum]
 def search_as_published(likelihood: Likelihood, start: Floats, search: Search) -> Optimum:
     """Powell's method on the paper's equations, in which points behind the camera count as if in front.
 
-    This reproduces the basin of section 4.7; to exclude such poses, as `optimise` does, widens it.
+    The rotation vector's components stay within +- pi, wherever the search starts; the position stays near the start.
+    This reproduces the basin of section 4.7. `optimise` excludes points behind the camera, which widens it, and centres
+    all ranges on the start, so that a camera turned by half a revolution is as well off as any other.
     """
-    return optimise(likelihood.mirrored(), start, search)
+    first = likelihood.start(check_pose(start, "start pose"))
+    centre = first.copy()
+    centre[3:N_PARAMETERS] = 0.0
+    half_width = likelihood.half_widths(search.half_width_m, np.pi)
+    return optimise_within(likelihood.mirrored(), first, centre, half_width, search)
 
 
 OPTIMISERS: Final[dict[str, Optimiser]] = {

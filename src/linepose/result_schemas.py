@@ -1,5 +1,6 @@
 """The columns of every result, with units in their names: what other code may rely on."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import pyarrow as pa
@@ -10,6 +11,11 @@ from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.residual_tables import POINT_COVARIANCE_COLUMNS
 
 LAPLACE_SIGMA_COLUMNS: Final = tuple(f"laplace_{name}" for name in SIGMA_COLUMNS)
+
+
+def laplace_sigma_columns(names: Sequence[str]) -> tuple[str, ...]:
+    """Columns of the curvature's sigmas of these parameters."""
+    return tuple(f"laplace_sigma_{name}" for name in names)
 
 
 def floats(*names: str) -> list[pa.Field]:
@@ -36,6 +42,17 @@ _POINT = [*whole_numbers("observation", "point", "time_us"), *floats("u_px", *PO
 
 POINTS: Final = pa.schema(_POINT)
 SCAN_POINTS: Final = pa.schema([*whole_numbers("observation", "point", "time_us"), *floats("u_px", "line")])
+_SCAN: Final = [*whole_numbers("observation", "n_lines"), *floats("range_m", "v_px_per_line")]
+EXTRACTION_ACCURACY: Final = pa.schema(
+    [
+        *_SCAN,
+        *texts("method"),
+        *flags("chosen"),
+        *whole_numbers("n_points", "n_missing"),
+        *floats("bias_u_px", "sigma_u_px", "bias_v_px", "sigma_v_px"),
+    ]
+)
+DETECTION: Final = pa.schema([*_SCAN, *whole_numbers("n_visible", "n_found", "n_wrong"), *texts("doubt")])
 OBSERVATIONS: Final = pa.schema([*_POINT, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
 OUTLIERS: Final = pa.schema(
     [
@@ -94,6 +111,9 @@ ESTIMATED_POINTS: Final = pa.schema(
     [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS, *POINT_COVARIANCE_COLUMNS)]
 )
 FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
+MAP_FRAME: Final = pa.schema(
+    [*texts("crs"), *(pa.field(name, pa.float64()) for name in ("latitude_deg", "longitude_deg", "height_m"))]
+)
 NAVIGATION_SIGMA: Final = pa.schema(floats(*navigation.SIGMA_COLUMNS))
 TRUTH_ERROR: Final = pa.schema(
     [
@@ -113,6 +133,6 @@ REGRESSION: Final = pa.schema(
 )
 
 
-def with_parameters(schema: pa.Schema, names: tuple[str, ...]) -> pa.Schema:
+def with_parameters(schema: pa.Schema, names: Sequence[str]) -> pa.Schema:
     """The schema with the columns of a noise model's own parameters at its end."""
     return pa.schema([*schema, *floats(*names)])

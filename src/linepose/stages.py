@@ -7,10 +7,11 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from linepose.diagnostics import ChainDiagnostics
+from linepose.errors import InputError
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Search, laplace_covariance, optimise
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.result_schemas import LAPLACE_SIGMA_COLUMNS
+from linepose.result_schemas import laplace_sigma_columns
 from linepose.rotations import Floats
 from linepose.sampling import Chain
 
@@ -20,26 +21,24 @@ def optimise_stages(
 ) -> pd.DataFrame:
     """The optimum of each stage from the start pose (6,), with the sigmas of the Laplace approximation.
 
-    Columns as in `result_schemas.OPTIMA`, and the noise model's own parameters. The reduced chi-square is 2 (-log L)
-    over the number of reprojected points less six: near one where the reported sigmas are right.
+    Columns as in `result_schemas.OPTIMA`, and the noise model's own parameters and their sigmas. The reduced
+    chi-square is the noise model's chi-square over its degrees of freedom: near one where the sigmas are right.
     """
     rows = []
     for name, numbers in stages.items():
         selected = likelihood.select(numbers)
         optimum = optimise(selected, start, search)
         sigma = np.sqrt(np.diag(laplace_covariance(selected, optimum.parameters)))
-        residuals = selected.residuals(optimum.parameters)
-        normalised = residuals.error_px / residuals.sigma_px
-        freedom = int(np.isfinite(normalised).sum()) - N_PARAMETERS
+        chi_square, freedom = selected.chi_square(optimum.parameters)
         rows.append(
             {
                 "stage": name,
                 "n_observations": len(numbers),
                 **dict(zip(likelihood.parameter_names, optimum.parameters, strict=True)),
-                **dict(zip(LAPLACE_SIGMA_COLUMNS, sigma[:N_PARAMETERS], strict=True)),
+                **dict(zip(laplace_sigma_columns(likelihood.parameter_names), sigma, strict=True)),
                 "neg_log_likelihood": optimum.neg_log_likelihood,
                 "start_neg_log_likelihood": -selected.log_likelihood(likelihood.start(start)),
-                "reduced_chi_square": float(np.nansum(normalised**2)) / max(freedom, 1),
+                "reduced_chi_square": chi_square / freedom,
                 "n_evaluations": optimum.n_evaluations,
                 "degrees_of_freedom": freedom,
                 "converged": optimum.converged,
@@ -57,21 +56,29 @@ def sample_table(chain: Chain, names: Sequence[str]) -> pd.DataFrame:
 
 
 def samples_from_table(table: pd.DataFrame, names: Sequence[str]) -> Floats:
-    """Samples (steps, walkers, P) of a table that `sample_table` made."""
+    """Samples (steps, walkers, P) of a table that `sample_table` made; raises InputError where rows are missing."""
     ordered = table.sort_values(["step", "walker"])
-    shape = (int(table["step"].max()) + 1, int(table["walker"].max()) + 1, len(names))
-    return ordered[list(names)].to_numpy().reshape(shape)
+    n_steps, n_walkers = int(table["step"].max()) + 1, int(table["walker"].max()) + 1
+    if len(table) != n_steps * n_walkers:
+        expected = f"{n_steps} steps of {n_walkers} walkers"
+        raise InputError("samples", f"{len(table)} rows", expected, "run its stage again")
+    return ordered[list(names)].to_numpy().reshape(n_steps, n_walkers, len(names))
+
+
+def estimated_parameters(optima: pd.DataFrame) -> list[str]:
+    """Names of the parameters that a table of `optimise_stages` has, the pose's first."""
+    return [name for name in optima.columns if set(laplace_sigma_columns([name])) <= set(optima.columns)]
 
 
 def diagnostics_table(optima: pd.DataFrame, diagnostics: Mapping[str, ChainDiagnostics]) -> pd.DataFrame:
-    """One row a parameter of the pose and stage: is the chain long enough, and do sampled and Laplace sigma agree.
+    """One row a parameter and stage: is the chain long enough, and do sampled and Laplace sigma agree.
 
     Columns as in `result_schemas.DIAGNOSTICS`.
     """
     rows = []
     for _, optimum in optima.iterrows():
         chain = diagnostics[optimum["stage"]]
-        for i, name in enumerate(POSE_COLUMNS):
+        for i, name in enumerate(estimated_parameters(optima)):
             rows.append(
                 {
                     "stage": optimum["stage"],
@@ -82,7 +89,7 @@ def diagnostics_table(optima: pd.DataFrame, diagnostics: Mapping[str, ChainDiagn
                     "effective_sample_size": chain.effective_sample_size[i],
                     "split_r_hat": chain.split_r_hat[i],
                     "sampled_sigma": chain.sigma[i],
-                    "laplace_sigma": optimum[LAPLACE_SIGMA_COLUMNS[i]],
+                    "laplace_sigma": optimum[laplace_sigma_columns([name])[0]],
                     "neg_log_likelihood": optimum["neg_log_likelihood"],
                     "reduced_chi_square": optimum["reduced_chi_square"],
                     "warning": chain.warning,
@@ -117,5 +124,5 @@ def pose_table(
             name: optimum[name]
             for name in ("stage", "n_observations", *POSE_COLUMNS, "neg_log_likelihood", "n_evaluations")
         }
-        rows.append(kept | dict(zip(SIGMA_COLUMNS, sampled_sigma[optimum["stage"]], strict=True)))
+        rows.append(kept | dict(zip(SIGMA_COLUMNS, sampled_sigma[optimum["stage"]][:N_PARAMETERS], strict=True)))
     return pd.DataFrame(rows)

@@ -82,7 +82,7 @@ def test_unmixed_chain_is_told():
     samples = autoregressive(0.0, 400, 10) + np.repeat([0.0, 3.0], 5)[None, :, None]
     found = diagnose_samples(samples)
     assert found.warning.endswith(
-        f"split R-hat {found.split_r_hat.max():.3f} is above 1.01: the walkers have not mixed"
+        f"split R-hat {found.split_r_hat.max():.3f} is above 1.01: the walkers have not mixed: raise sampling.n_steps"
     )
 
 

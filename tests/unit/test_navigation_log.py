@@ -49,6 +49,7 @@ def test_both_kinds_of_file_give_the_same_log(tmp_path, name):
     writer = values.to_parquet if name.endswith("parquet") else values.to_csv
     writer(tmp_path / name, index=False)
     log = read_navigation_log(tmp_path / name)
+    assert log.source == str(tmp_path / name)
     np.testing.assert_array_equal(log.time_us, values["time_us"])
     np.testing.assert_allclose(log.position_m, values[list(POSITION_COLUMNS)], rtol=1e-15)
     np.testing.assert_allclose(log.euler_rad, values[list(EULER_COLUMNS)], atol=1e-15)
@@ -98,14 +99,16 @@ def test_points_get_the_pose_columns():
 
 @pytest.mark.parametrize("offset", [-1, 490_001])
 def test_observation_outside_the_log_is_named(offset):
-    with pytest.raises(InputError, match=r"observation 7, point 1: found time .* within the navigation log"):
+    with pytest.raises(
+        InputError, match=r"navigation: observation 7, point 1: found time .* within the navigation log"
+    ):
         associate_poses(points(START_US, START_US + offset), log_of(table()), nearest_pose, 1.0)
 
 
 def test_observation_in_a_gap_is_named():
     values = table().drop(index=range(20, 30))
     inside, beside = START_US + 250_000, START_US + 185_000
-    with pytest.raises(InputError, match=r"observation 7, point 1: found a gap of 0.110 s"):
+    with pytest.raises(InputError, match=r"navigation: observation 7, point 1: found a gap of 0.110 s"):
         associate_poses(points(beside, inside), log_of(values), nearest_pose, 0.1)
     assert len(associate_poses(points(beside), log_of(values), nearest_pose, 0.1)) == 1
     assert len(associate_poses(points(inside), log_of(values), nearest_pose, 0.2)) == 1

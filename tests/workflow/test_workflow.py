@@ -1,3 +1,4 @@
+import re
 import shutil
 
 import numpy as np
@@ -13,6 +14,7 @@ pytestmark = pytest.mark.workflow
 def test_every_result_is_made(finished):
     made = set(finished.results())
     stages = ["points", "observations", "outliers", "optima", "pose", "diagnostics", "truth", "truth_error"]
+    stages += ["extraction_accuracy", "detection", "detected_points"]
     assert {f"tiny/{stage}.parquet" for stage in stages} <= made
     assert {"regression.parquet", "tiny/mcmc/all.parquet", "tiny/mcmc/inliers.parquet"} <= made
 
@@ -34,6 +36,12 @@ def test_points_are_those_of_the_simulation(finished):
     assert len(both) == len(points) == 60
     np.testing.assert_allclose(both["u_px"], both["u_px_true"], atol=0.2)
     np.testing.assert_allclose(both["line"], both["line_true"], atol=0.3)
+
+
+def test_all_points_are_detected_without_labels(finished):
+    detection = pd.read_parquet(finished.folder / "results" / "tiny" / "detection.parquet")
+    assert detection["n_visible"].tolist() == detection["n_found"].tolist() == [15] * 4
+    assert detection["n_wrong"].sum() == 0
 
 
 def test_nothing_is_left_to_do_after_a_run(finished):
@@ -76,24 +84,67 @@ def test_wrong_configuration_is_one_line_and_spares_the_results(copied, study, p
     assert copied.results() == before
 
 
-def recorded(project, name):
+def recorded(project, name, **source):
     """The simulated survey as a platform of the user's own, with its files in a data folder."""
     shutil.copytree(project.folder / "results" / "tiny" / "simulated", project.folder / "data" / name)
-    return TINY | {"simulation": None, "source": {"kind": "scans", "dataset": name, "points": "detection"}}
+    return TINY | {"simulation": None, "source": {"kind": "scans", "dataset": name, **source}}
 
 
-def test_own_scans_without_labels_while_another_platform_fails(copied):
-    own, bad = recorded(copied, "own"), recorded(copied, "bad")
+def truncate_scan(folder):
+    scan = folder / "scans" / "observation-02.bil"
+    scan.write_bytes(scan.read_bytes()[:-1000])
+
+
+def claim_absurd_size(folder):
+    header = folder / "scans" / "observation-03.hdr"
+    header.write_text(re.sub("lines = .*", "lines = 900000000000", header.read_text()))
+
+
+def turn_time_back(folder):
+    times = folder / "scans" / "observation-01-times.csv"
+    rows = times.read_text().splitlines()
+    times.write_text("\n".join([*rows[:9], rows[7], *rows[10:]]) + "\n")
+
+
+def scatter_pixels(folder):
+    scan = folder / "scans" / "observation-04.bil"
+    np.random.default_rng(0).permutation(np.fromfile(scan, "<u2")).tofile(scan)
+
+
+def put_label_outside(folder):
+    labels = pd.read_csv(folder / "labels.csv")
+    labels.loc[20, "u_px"] = 700.0
+    labels.to_csv(folder / "labels.csv", index=False)
+
+
+def end_log_early(folder):
+    log = pd.read_parquet(folder / "navigation.parquet")
+    log.iloc[: len(log) // 2].to_parquet(folder / "navigation.parquet", index=False)
+
+
+BAD = {
+    "truncated": (truncate_scan, "labels", "data/truncated/scans/observation-02.bil: found "),
+    "absurd": (claim_absurd_size, "labels", "data/absurd/scans/observation-03.hdr: lines: found 900000000000,"),
+    "clock": (turn_time_back, "labels", "data/clock/scans/observation-01-times.csv, row 10: found time "),
+    "boardless": (scatter_pixels, "detection", "data/boardless/scans/observation-04.hdr: found no board"),
+    "label": (put_label_outside, "labels", "data/label/scans/observation-02.hdr: label of observation 2, point 5: "),
+    "log": (end_log_early, "labels", "data/log/navigation.parquet: observation 3, point 0: found time "),
+}
+
+
+def test_own_scans_without_labels_while_other_platforms_fail(copied):
+    platforms = {"tiny": TINY, "own": recorded(copied, "own", points="detection")}
+    platforms |= {name: recorded(copied, name, points=points) for name, (_, points, _) in BAD.items()}
     data = copied.folder / "data"
     (data / "own" / "labels.csv").unlink()
-    scan = data / "bad" / "scans" / "observation-02.bil"
-    scan.write_bytes(scan.read_bytes()[:-1000])
+    for name, (spoil, _, _) in BAD.items():
+        spoil(data / name)
     before = copied.results()
-    copied.configure(STUDY | {"platforms": ["tiny", "own", "bad"]}, {"tiny": TINY, "own": own, "bad": bad})
-    run = copied.run("--keep-going")
+    copied.configure(STUDY | {"platforms": list(platforms)}, platforms)
+    run = copied.run()
     assert run.returncode != 0
-    assert len(lines_with("observation-02.bil: found", run.stderr)) == 1, run.stderr
-    assert "truncated" in run.stderr
+    for _, _, told in BAD.values():
+        assert len(lines_with(told, run.stderr)) == 1, run.stderr
     assert "Traceback" not in run.stderr
     after = copied.results()
     assert {path: after[path] for path in before if path.startswith("tiny/")} == {
@@ -105,11 +156,11 @@ def test_own_scans_without_labels_while_another_platform_fails(copied):
         for name in ("tiny", "own")
     ]
     np.testing.assert_allclose(poses[0], poses[1], atol=0.05)
-    assert not (copied.folder / "results" / "bad" / "points.parquet").exists()
+    assert not any((copied.folder / "results" / name / "observations.parquet").exists() for name in BAD)
 
 
 def test_file_that_is_missing_from_own_data_is_one_line(copied):
-    own = recorded(copied, "own")
+    own = recorded(copied, "own", points="detection")
     (copied.folder / "data" / "own" / "navigation.parquet").unlink()
     before = copied.results()
     copied.configure(STUDY | {"platforms": ["own"]}, {"own": own})
@@ -134,3 +185,15 @@ def test_simulated_platforms_run_when_the_field_data_cannot_be_had(tmp_path):
     told = "data set ladybird: not in data and not to be downloaded; only the other platforms run: tiny"
     assert len(lines_with(told, run.stderr + run.stdout)) == 1, run.stderr
     assert "results/ladybird/" not in run.stdout + run.stderr
+
+
+def test_snakemakes_own_report_has_every_figure_with_title_and_caption(finished, tmp_path):
+    run = finished.run("--report", str(tmp_path / "report.html"))
+    assert run.returncode == 0, run.stderr
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    drawn = pd.read_parquet(finished.folder / "results" / "tiny" / "figures" / "index.parquet").query("left_out == ''")
+    assert len(drawn) > 10
+    for title in drawn["title"]:
+        assert f'"labels": {{"figure": "{title}"' in page
+    assert page.count("platform <tt") == len(drawn)  # the end of each figure's caption
+    assert '{"result": "summary of all platforms"}' in page

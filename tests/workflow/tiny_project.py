@@ -17,6 +17,7 @@ STUDY = {
     "data_folders": ["data"],
     "outliers": {"minimum_observations": 3, "threshold_px": 50.0},
     "sampling": {"n_walkers": 14, "n_burn_in": 5, "n_steps": 12},
+    "independence_sampling": {"n_walkers": 22, "n_burn_in": 20, "n_steps": 12},
 }
 PASSES = [
     {"north_m": -2.85, "east_m": -0.55, "heading_deg": 21, "speed_m_s": -0.5, "duration_s": 4},
@@ -31,6 +32,7 @@ TINY = {
         "basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]},
         "repeatability": None,
         "sensitivity": None,
+        "noise_models": {"n_splits": 2, "robust_steps": 12},
     },
     "simulation": {
         "passes": PASSES,
@@ -54,18 +56,24 @@ class Project:
         for name, values in platforms.items():
             (config / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(dict(values)))
 
-    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
+    def start(self, *arguments: str, cores: int = 2) -> subprocess.Popen[str]:
+        """The workflow, begun in a session of its own, so that all its processes can be killed at once."""
         command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]
         path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
-        return subprocess.run(
+        return subprocess.Popen(
             [*command, *arguments],
             cwd=self.folder,
             env=os.environ | {"PYTHONPATH": path},
-            capture_output=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             text=True,
-            timeout=600,
-            check=False,
+            start_new_session=True,
         )
+
+    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
+        started = self.start(*arguments, cores=cores)
+        output, error = started.communicate(timeout=600)
+        return subprocess.CompletedProcess(started.args, started.returncode, output, error)
 
     def results(self) -> dict[str, bytes]:
         """Every Parquet result by its path."""

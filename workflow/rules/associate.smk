@@ -4,6 +4,7 @@ rule associate:
     output:
         observations="results/{platform}/observations.parquet",
         sigma="results/{platform}/navigation_sigma.parquet",
+        frame="results/{platform}/map_frame.parquet",
     log:
         "results/logs/{platform}/associate.log",
     conda:
@@ -11,9 +12,6 @@ rule associate:
     params:
         platform=settings,
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=[
-            source_digest("linepose.navigation"),
-            source_digest("linepose.navigation_log"),
-        ],
+        code=source_digest("linepose.recorded"),
     script:
         "../../scripts/associate.py"

@@ -1,5 +1,6 @@
 import os
 from pathlib import Path
+from typing import get_args
 
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
@@ -7,7 +8,9 @@ from snakemake.logging import logger
 from linepose.config.project import load_project
 from linepose.datasets import can_be_reached
 from linepose.errors import LineposeError
+from linepose.likelihood.names import NoiseModelName
 from linepose.provenance import files_digest, source_digest
+from linepose.storage import read_table
 
 
 def can_download(dataset):
@@ -32,6 +35,7 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
+NOISE_MODELS = get_args(NoiseModelName)
 PLATFORMS = [name for name in STUDY.platforms if name in PROJECT.platforms]
 
 
@@ -43,7 +47,7 @@ def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
     return PROJECT.platforms[wildcards.platform].model_dump(
         mode="json",
-        exclude={"description", "published", "experiments", "outline"},
+        exclude={"description", "published", "experiments", "outline", "map_frame"},
     )
 
 
@@ -54,9 +58,27 @@ def experiment(key):
     ].experiments.model_dump(mode="json")[key]
 
 
+def readable(wildcards):
+    """The check of what the platform recorded; what was simulated here needs none."""
+    if wildcards.platform in PROJECT.simulated:
+        return []
+    return f"results/logs/{wildcards.platform}/check_readable.passed"
+
+
+def compiled(wildcards):
+    """The compiled kernel of the platform's noise model; the others may still be in the making."""
+    return f"results/compiled/{PROJECT.platforms[wildcards.platform].noise_model}.txt"
+
+
 def platform_file(wildcards):
     """The platform's file, for messages."""
     return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
+
+
+def sampling(wildcards):
+    """How the platform's noise model is sampled, as a rule's parameter."""
+    noise_model = PROJECT.platforms[wildcards.platform].noise_model
+    return STUDY.sampling_of(noise_model).model_dump(mode="json")
 
 
 def section(key):

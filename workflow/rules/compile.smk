@@ -1,8 +1,8 @@
 rule compile:
     output:
-        "results/compiled.txt",
+        "results/compiled/{noise_model}.txt",
     log:
-        "results/logs/compile.log",
+        "results/logs/compile_{noise_model}.log",
     conda:
         "../../environment.yml"
     params:

@@ -11,6 +11,7 @@ rule diagnose:
         "../../environment.yml"
     params:
         platform=settings,
+        sampling=sampling,
         code=source_digest("linepose.stages"),
     script:
         "../../scripts/diagnose.py"

@@ -1,6 +1,7 @@
 rule extract:
     input:
-        lambda wildcards: PROJECT.record(wildcards.platform),
+        record=lambda wildcards: PROJECT.record(wildcards.platform),
+        readable=readable,
     output:
         "results/{platform}/points.parquet",
     log:
@@ -10,10 +11,6 @@ rule extract:
     params:
         platform=settings,
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=[
-            source_digest("linepose.extraction.labelled_views"),
-            source_digest("linepose.extraction.scan_survey"),
-            source_digest("linepose.extraction.labels"),
-        ],
+        code=source_digest("linepose.recorded"),
     script:
         "../../scripts/extract.py"

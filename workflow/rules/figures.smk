@@ -17,7 +17,7 @@ rule figures:
             caption="../report/figure.rst",
             category="{platform}",
             subcategory="Figures",
-            labels={"figure": "{figure}"},
+            labels=figure_labels,
         ),
     log:
         "results/logs/{platform}/figures.log",

@@ -4,7 +4,7 @@ rule leave_one_out:
         outliers="results/{platform}/outliers.parquet",
         optima="results/{platform}/optima.parquet",
         samples="results/{platform}/mcmc",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         "results/{platform}/leave_one_out.parquet",
     log:

@@ -4,7 +4,7 @@ rule mapping:
         outliers="results/{platform}/outliers.parquet",
         optima="results/{platform}/optima.parquet",
         samples="results/{platform}/mcmc",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         points="results/{platform}/mapping.parquet",
         summary="results/{platform}/mapping_summary.parquet",

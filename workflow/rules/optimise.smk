@@ -2,7 +2,7 @@ rule optimise:
     input:
         observations="results/{platform}/observations.parquet",
         outliers="results/{platform}/outliers.parquet",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         "results/{platform}/optima.parquet",
     log:

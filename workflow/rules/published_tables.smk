@@ -9,7 +9,16 @@ rule published_tables:
         expand(
             "results/tables/table{number}.{kind}",
             number=[2, 3, 4, 5],
-            kind=["parquet", "csv", "md"],
+            kind=["parquet", "md"],
+        ),
+        *(
+            report(
+                f"results/tables/table{number}.csv",
+                caption="../report/table.rst",
+                category="Report",
+                labels={"result": f"Table {number}, published and obtained"},
+            )
+            for number in [2, 3, 4, 5]
         ),
     log:
         "results/logs/published_tables.log",

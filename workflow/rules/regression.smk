@@ -4,8 +4,15 @@ REGRESSED = {
     key: PROJECT.platforms[key].published
     for key in PLATFORMS
     if PROJECT.platforms[key].published
+    and PROJECT.platforms[key].noise_model == "published"
 }
-REGRESSED_ON_TRUTH = [key for key in REGRESSED if key in PROJECT.simulated]
+
+# Those with a known truth, and the sigmas that their points' extraction is held to.
+REGRESSED_ON_TRUTH = {
+    key: PROJECT.platforms[key].camera.sigmas.model_dump(include={"u_px", "v_px"})
+    for key in REGRESSED
+    if key in PROJECT.simulated
+}
 
 # Platforms with all experiments that the paper has numbers of.
 COMPARED = [
@@ -38,6 +45,13 @@ rule regression:
         truth_error=expand(
             "results/{platform}/truth_error.parquet", platform=REGRESSED_ON_TRUTH
         ),
+        accuracy=expand(
+            "results/{platform}/extraction_accuracy.parquet",
+            platform=REGRESSED_ON_TRUTH,
+        ),
+        detection=expand(
+            "results/{platform}/detection.parquet", platform=REGRESSED_ON_TRUTH
+        ),
     output:
         parquet="results/regression.parquet",
         csv=report(
@@ -55,7 +69,10 @@ rule regression:
         compared=COMPARED,
         swept=SWEPT,
         on_truth=REGRESSED_ON_TRUTH,
-        code=source_digest("linepose.tables.experiments_regression"),
+        code=[
+            source_digest("linepose.tables.experiments_regression"),
+            source_digest("linepose.tables.simulated"),
+        ],
     script:
         "../../scripts/regression.py"
 

@@ -1,7 +1,7 @@
 rule reject_outliers:
     input:
-        "results/{platform}/observations.parquet",
-        "results/compiled.txt",
+        observations="results/{platform}/observations.parquet",
+        compiled=compiled,
     output:
         "results/{platform}/outliers.parquet",
     log:

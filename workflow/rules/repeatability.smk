@@ -2,7 +2,7 @@ rule repeatability:
     input:
         observations="results/{platform}/observations.parquet",
         outliers="results/{platform}/outliers.parquet",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         "results/{platform}/repeatability.parquet",
     log:
@@ -15,7 +15,7 @@ rule repeatability:
         repeatability=experiment("repeatability"),
         file=platform_file,
         search=section("search"),
-        sampling=section("sampling"),
+        sampling=sampling,
         seed=STUDY.seed,
         code=[
             source_digest("linepose.experiments.repeatability"),

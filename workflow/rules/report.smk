@@ -26,8 +26,8 @@ rule report:
         },
         study=STUDY.model_dump(mode="json"),
         code=[
-            source_digest("linepose.report.page"),
-            source_digest("linepose.report.summary"),
+            source_digest("linepose.report.assemble"),
+            source_digest("linepose.report.published"),
         ],
         templates=files_digest("report/templates"),
     script:

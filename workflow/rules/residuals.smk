@@ -3,7 +3,7 @@ rule residuals:
         observations="results/{platform}/observations.parquet",
         outliers="results/{platform}/outliers.parquet",
         optima="results/{platform}/optima.parquet",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         residuals="results/{platform}/residuals.parquet",
         points="results/{platform}/estimated_points.parquet",

@@ -3,7 +3,7 @@ rule sample:
         observations="results/{platform}/observations.parquet",
         outliers="results/{platform}/outliers.parquet",
         optima="results/{platform}/optima.parquet",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         directory("results/{platform}/mcmc"),
     log:
@@ -13,7 +13,7 @@ rule sample:
     threads: 2
     params:
         platform=settings,
-        sampling=section("sampling"),
+        sampling=sampling,
         seed=STUDY.seed,
         code=[
             source_digest("linepose.stages"),

@@ -2,13 +2,9 @@ rule sensitivity:
     input:
         observations="results/{platform}/observations.parquet",
         outliers="results/{platform}/outliers.parquet",
-        other_observations=lambda wildcards: expand(
-            "results/{other}/observations.parquet", other=others(wildcards)
-        ),
-        other_outliers=lambda wildcards: expand(
-            "results/{other}/outliers.parquet", other=others(wildcards)
-        ),
-        compiled="results/compiled.txt",
+        other_observations=of_others("sensitivity", "observations"),
+        other_outliers=of_others("sensitivity", "outliers"),
+        compiled=compiled,
     output:
         "results/{platform}/sensitivity.parquet",
     log:
@@ -17,12 +13,7 @@ rule sensitivity:
         "../../environment.yml"
     params:
         platform=settings,
-        others=lambda wildcards: {
-            key: PROJECT.platforms[key].model_dump(
-                mode="json", exclude={"description", "published", "experiments"}
-            )
-            for key in others(wildcards)
-        },
+        others=settings_of_others("sensitivity"),
         search=section("search"),
         code=[
             source_digest("linepose.experiments.sensitivity"),

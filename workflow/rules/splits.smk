@@ -4,7 +4,7 @@ rule splits:
         outliers="results/{platform}/outliers.parquet",
         optima="results/{platform}/optima.parquet",
         samples="results/{platform}/mcmc",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         "results/{platform}/splits.parquet",
     log:

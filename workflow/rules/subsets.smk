@@ -2,7 +2,7 @@ rule subsets:
     input:
         observations="results/{platform}/observations.parquet",
         outliers="results/{platform}/outliers.parquet",
-        compiled="results/compiled.txt",
+        compiled=compiled,
     output:
         "results/{platform}/subsets.parquet",
     log:
@@ -15,7 +15,7 @@ rule subsets:
         subsets=experiment("subsets"),
         file=platform_file,
         search=section("search"),
-        sampling=section("sampling"),
+        sampling=sampling,
         seed=STUDY.seed,
         code=[
             source_digest("linepose.experiments.subsets"),

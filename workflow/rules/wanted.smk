@@ -4,6 +4,8 @@ def asked_for(platform):
     repeatability = experiments.repeatability
     asked = {
         "uncertainty": True,
+        "prior": True,
+        "clock_offset": experiments.clock_offset,
         "subsets": experiments.subsets,
         "repeatability": repeatability and repeatability.first,
         "splits": repeatability and repeatability.n_splits,
@@ -11,15 +13,48 @@ def asked_for(platform):
         "basin_summary": experiments.basin,
         "mapping_summary": experiments.mapping,
         "sensitivity": experiments.sensitivity,
+        "noise_models": experiments.noise_models,
+        "consistency_summary": experiments.noise_models,
     }
     return [
         f"results/{platform}/{key}.parquet" for key, value in asked.items() if value
     ]
 
 
-def others(wildcards):
-    """Platforms that the sensitivity experiment compares with."""
-    return PROJECT.platforms[wildcards.platform].experiments.sensitivity.platforms
+def results_of(platform):
+    """Every result of a platform that people read."""
+    always = ["pose", "diagnostics"]
+    against_truth = (
+        ["truth_error", "detection"] if platform in PROJECT.simulated else []
+    )
+    return asked_for(platform) + [
+        f"results/{platform}/{key}.parquet" for key in always + against_truth
+    ]
+
+
+def others(key):
+    """Platforms that the experiment of this key compares with."""
+    return lambda wildcards: getattr(
+        PROJECT.platforms[wildcards.platform].experiments, key
+    ).platforms
+
+
+def of_others(key, result):
+    """This result of the platforms that the experiment of this key compares with."""
+    return lambda wildcards: expand(
+        f"results/{{other}}/{result}.parquet", other=others(key)(wildcards)
+    )
+
+
+def settings_of_others(key):
+    """What the files of the platforms say that the experiment of this key compares with."""
+    return lambda wildcards: {
+        name: PROJECT.platforms[name].model_dump(
+            mode="json",
+            exclude={"description", "published", "experiments", "map_frame"},
+        )
+        for name in others(key)(wildcards)
+    }
 
 
 def drawn_from(wildcards):
@@ -33,6 +68,11 @@ def drawn_from(wildcards):
         "basin_summary": experiments.basin,
         "mapping": experiments.mapping,
         "mapping_summary": experiments.mapping,
+        "weights": experiments.noise_models,
+        "identifiability": experiments.noise_models,
+        "consistency": experiments.noise_models,
+        "consistency_summary": experiments.noise_models,
+        "detected_points": wildcards.platform in PROJECT.simulated,
     }
     return [
         f"results/{wildcards.platform}/{key}.parquet"
@@ -42,14 +82,31 @@ def drawn_from(wildcards):
 
 
 def reported(wildcards):
-    """Every result that the report's summaries rest on."""
+    """Every result that the report's summaries and sections rest on."""
     always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
     known = [
         file
         for platform in PLATFORMS
         for file in asked_for(platform)
-        if Path(file).stem in ("splits", "leave_one_out")
+        if Path(file).stem
+        in (
+            "splits",
+            "leave_one_out",
+            "sensitivity",
+            "subsets",
+            "noise_models",
+            "consistency_summary",
+            "prior",
+            "clock_offset",
+        )
     ]
     return known + expand(
         "results/{platform}/{name}.parquet", platform=PLATFORMS, name=always
     )
+
+
+def figure_labels(wildcards):
+    """A figure's title and its number in the paper, for Snakemake's report."""
+    index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
+    entry = index.set_index("figure").loc[wildcards.figure]
+    return {"figure": entry["title"], "paper": entry["paper_figure"] or "beyond it"}

@@ -66,8 +66,9 @@ class BasinSection(Section):
         ["powell", "wide"],
         min_length=1,
         description="Searches to compare on the same starts. powell: on the paper's equations, where points behind the "
-        "camera count as if in front. powell_in_front: as the poses are found, such points excluded. wide: rotations "
-        "first, then least squares, then Powell.",
+        "camera count as if in front, and with rotation components within +- pi. powell_in_front: as the poses are "
+        "found, such points excluded, all ranges centred on the start. wide: rotations first, then least squares, then "
+        "Powell.",
     )
     success_threshold: PositiveFloat = Field(
         0.1, description="A success ends nearer to the optimum than this (sigmas)."
@@ -92,6 +93,12 @@ class MappingSection(Section):
     perturbation_deg: PositiveFloat = Field(1.0, description="Turn about each body axis of the perturbed pose (deg).")
 
 
+class ClockOffsetSection(Section):
+    """The camera's clock against the navigation's, one parameter beside the pose; needs a raw navigation log."""
+
+    maximum_s: PositiveFloat = Field(0.1, description="The clocks differ by no more than this (s).")
+
+
 class SensitivitySection(Section):
     """The pose under other choices."""
 
@@ -102,6 +109,21 @@ class SensitivitySection(Section):
     )
 
 
+class NoiseModelsSection(Section):
+    """The pose under each noise model, side by side, and whether disjoint observations agree under each."""
+
+    platforms: list[str] = Field(
+        [],
+        description="Platform files with other views of the same pattern by the same camera, such as the forward "
+        "passes; they are run as far as the outlier removal.",
+    )
+    n_splits: PositiveInt = Field(200, description="Random splits of each platform's accepted observations.")
+    robust_steps: int = Field(
+        400, ge=4, description="Steps kept of the robust model's chains, ten times as dear as the shared model's."
+    )
+    batch_size: PositiveInt = Field(20, description="Splits between two savings; no result depends on it.")
+
+
 class ExperimentsSection(Section):
     """Which experiments are run on the accepted observations; null leaves one out."""
 
@@ -110,3 +132,12 @@ class ExperimentsSection(Section):
     basin: BasinSection | None = Field(BasinSection(), description="Basin of attraction.")
     mapping: MappingSection | None = Field(MappingSection(), description="Mapping.")
     sensitivity: SensitivitySection | None = Field(SensitivitySection(), description="Other choices.")
+    noise_models: NoiseModelsSection | None = Field(None, description="All noise models side by side.")
+    clock_offset: ClockOffsetSection | None = Field(
+        None, description="Clock offset, of platforms with scans and a raw navigation log only."
+    )
+
+    def other_platforms(self) -> list[str]:
+        """Platform files that an experiment compares with."""
+        named = [name for one in (self.sensitivity, self.noise_models) if one for name in one.platforms]
+        return list(dict.fromkeys(named))

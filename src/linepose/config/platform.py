@@ -21,9 +21,13 @@ from pydantic import (
 
 from linepose.camera import Camera, CameraSigmas
 from linepose.config.experiments import ExperimentsSection
+from linepose.config.map_frame import MapFrameSection
+from linepose.config.navigation_formats import Navigation
 from linepose.config.outline import OutlineSection
-from linepose.config.schema import Section, validated
+from linepose.config.schema import Section, faults_of, validated
 from linepose.errors import InputError
+from linepose.likelihood.names import NoiseModelName
+from linepose.likelihood.prior import PosePrior, pose_prior
 from linepose.pose import rotation_vector_covariance, rotation_vector_pose
 from linepose.rotations import Floats
 from linepose.simulate.settings import SimulationSettings, settings_from_dict
@@ -121,28 +125,62 @@ class ScansSection(Section):
     )
     scans: str = Field(
         "scans/*.hdr",
-        description="Scans (ENVI headers, PNG, TIFF) in the order of the observations, each with NAME-times.csv.",
+        description="Scans (ENVI headers, PNG, TIFF) in the order of the observations, with their time stamps beside.",
+    )
+    time_stamps: Literal["csv", "resonon", "headwall"] = Field(
+        "csv",
+        description="Time stamps of a scan's lines: NAME-times.csv (us since 1970), Resonon's NAME.times and NAME.lcf, "
+        "or Headwall's frameIndex_N.txt beside raw_N.",
+    )
+    time_scale: Literal["unix", "gps"] | None = Field(
+        None,
+        description="Clock of the time stamps: Unix time, or since 1980-01-06 with leap seconds counted; if not given, "
+        "gps for resonon and unix for the others.",
     )
     left_out: tuple[PositiveInt, ...] = Field((), description="Numbers of observations that are not used.")
     points: Literal["labels", "detection"] = Field(
         "labels", description="Pattern points from approximate labels, or found without any."
     )
-    labels: str = Field("labels.csv", description="File of the labels: observation, point, u_px, line.")
+    labels: str = Field(
+        "labels.csv",
+        description="Labels: CSV (observation, point, u_px, line), CVAT for images 1.1 (.xml), or LabelMe (a pattern "
+        "of .json files, one a scan).",
+    )
     refinement: Literal["centroid", "peak"] = Field(
         "centroid",
         description="Centre of a dot: intensity-weighted mean, or the enlarged patch's peak as in the paper.",
     )
-    navigation: str = Field(
-        "navigation.parquet", description="Raw navigation log, Parquet or CSV: time_us, north_m, ..., yaw_rad."
+    navigation: Navigation = Field(
+        "navigation.parquet",
+        description="Raw navigation log: path of Parquet or CSV with time_us, north_m, ..., yaw_rad, or a format with "
+        "its keys.",
     )
-    covariances: str = Field("covariances.csv", description="File of the navigation covariances: time (us), 12x12.")
+    covariances: str | None = Field(
+        None,
+        description="File of the navigation covariances: time (us), 12x12. If not given, covariances.csv beside a log "
+        "that is named by its path, else those in the log.",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_our_own_table(cls, values: Any) -> Any:
+        own = isinstance(values, Mapping) and isinstance(values.get("navigation", ""), str)
+        return {"covariances": "covariances.csv", **values} if own else values
 
     def files(self, folder: Path) -> set[Path]:
         """Every file that is read, of a data set in this folder."""
         scans = list(folder.glob(self.scans))
         beside = {path for scan in scans for path in scan.parent.glob(f"{glob.escape(scan.stem)}[.-]*")}
-        labels = {folder / self.labels} if self.points == "labels" else set()
-        return {*beside, *labels, folder / self.navigation, folder / self.covariances}
+        beside |= {scan.with_suffix("") for scan in scans}  # run.bil of run.bil.hdr
+        if self.time_stamps == "resonon":
+            beside |= {path for scan in scans for suffix in ("*.times", "*.lcf") for path in scan.parent.glob(suffix)}
+        elif self.time_stamps == "headwall":
+            beside |= {path for scan in scans for path in scan.parent.glob("frameIndex_*.txt")}
+        labels = set(folder.glob(self.labels)) or {folder / self.labels} if self.points == "labels" else set()
+        navigation = self.navigation
+        log = {folder / navigation} if isinstance(navigation, str) else navigation.files(folder)
+        covariances = {folder / self.covariances} if self.covariances else set()
+        return {*(path for path in beside if path.is_file()), *scans, *labels, *log, *covariances}
 
 
 def _simulation(values: Any) -> Any:
@@ -184,11 +222,24 @@ class Platform(Section):
     simulation: Simulation | None = Field(
         None, description="A simulated survey with a known truth: keys and units in linepose.simulate.settings."
     )
-    noise_model: Literal["published"] = Field("published", description="The likelihood's model of the noise.")
+    noise_model: NoiseModelName = Field(
+        "published",
+        description="The likelihood's model of the noise. published: every line of a view errs independently, as "
+        "reported (the paper). shared: the navigation error is common to a view, its level inferred (recommended). "
+        "robust: shared, with heavy tails for bad views and points.",
+    )
+    prior: Literal["none", "hand_measured"] = Field(
+        "none",
+        description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start. "
+        "none: the data decide alone, as in the paper.",
+    )
     published: Literal["ladybird", "ladybird_attitude", "ladybird_simulated", "shrimp_simulated"] | None = Field(
-        None, description="The published numbers that the results are held against, if any."
+        None,
+        description="The published numbers that the results are held against, if any; the noise model must be the "
+        "published one for that.",
     )
 
+    map_frame: MapFrameSection | None = Field(None, description="Where the survey lies on the Earth.")
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
     experiments: ExperimentsSection = Field(
         ExperimentsSection(), description="Experiments on the accepted observations."
@@ -198,6 +249,15 @@ class Platform(Section):
     def _has_one_origin(self) -> "Platform":
         if (self.simulation is None) == (self.source.dataset is None):
             raise ValueError("either source.dataset, or a simulation with a source of kind scans")
+        return self
+
+    @model_validator(mode="after")
+    def _has_a_log_for_a_clock_offset(self) -> "Platform":
+        if self.experiments.clock_offset is not None and self.source.kind != "scans":
+            raise ValueError(
+                "no experiments.clock_offset here: labelled views hold body poses and no log; a source of kind scans "
+                "has one"
+            )
         return self
 
     def intrinsics(self) -> Camera:
@@ -214,6 +274,14 @@ class Platform(Section):
         sigma = np.repeat([hand.sigma_position_m, np.deg2rad(hand.sigma_euler_deg)], 3)
         return rotation_vector_covariance(self._hand_measured_euler_pose(), np.diag(sigma**2))
 
+    def hand_measurement(self) -> PosePrior:
+        """The hand-measured pose with its covariance, whether it counts as a prior or not."""
+        return pose_prior(self.start_pose(), self.start_covariance())
+
+    def pose_prior(self) -> PosePrior | None:
+        """The pose's prior; None where the data decide alone."""
+        return self.hand_measurement() if self.prior == "hand_measured" else None
+
     def _hand_measured_euler_pose(self) -> Floats:
         return np.concatenate([self.hand_measured.position_m, np.deg2rad(self.hand_measured.euler_deg)])
 
@@ -224,6 +292,15 @@ def load_platform(folder: Path, name: str) -> Platform:
     Raises InputError for a file that is missing, is not YAML, or says something that no platform has.
     """
     return validated(Platform, _merged_values(folder, name, []), str(folder / f"{name}.yaml"))
+
+
+def platform_faults(folder: Path, name: str) -> list[InputError]:
+    """Every fault of config/platforms/NAME.yaml; none where `load_platform` would read it."""
+    try:
+        values = _merged_values(folder, name, [])
+    except InputError as error:
+        return [error]
+    return faults_of(Platform, values, str(folder / f"{name}.yaml"))
 
 
 def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:

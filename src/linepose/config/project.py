@@ -15,7 +15,7 @@ from linepose.errors import InputError
 class Project:
     """A checked configuration; `folders` says where each data set was found, or will be downloaded to.
 
-    `platforms` has those of the study first, then those that only a sensitivity experiment compares with.
+    `platforms` has those of the study first, then those that only an experiment compares with.
     A data set that `datasets` does not list has no sums: it is the user's own, found in a data folder.
     `unavailable` names the data sets that can neither be found nor downloaded; their platforms are not in `platforms`.
     """
@@ -73,7 +73,7 @@ def load_project(
     study = check_study(values)
     platforms = {name: load_platform(root / study.platforms_folder, name) for name in study.platforms}
     for platform in list(platforms.values()):
-        for name in platform.experiments.sensitivity.platforms if platform.experiments.sensitivity else ():
+        for name in platform.experiments.other_platforms():
             platforms.setdefault(name, load_platform(root / study.platforms_folder, name))
     for name in study.coverage.platforms:
         if name not in study.platforms or platforms[name].simulation is None:

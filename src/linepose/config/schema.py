@@ -30,11 +30,24 @@ def validated(model: type[Model], values: Any, place: str) -> Model:
         raise InputError(f"{place}: {error.place}", error.found, error.expected, error.remedy) from None
 
 
+def faults_of(model: type[Section], values: Any, place: str) -> list[InputError]:
+    """Every fault of the values as a model, misspelt keys first; none where they are right."""
+    try:
+        model.model_validate(values)
+    except ValidationError as error:
+        faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+        return [_one_line(model, fault, place) for fault in faults]
+    except InputError as error:
+        return [InputError(f"{place}: {error.place}", error.found, error.expected, error.remedy)]
+    return []
+
+
 def _one_line(model: type[Section], fault: ErrorDetails, place: str) -> InputError:
     location = [str(part) for part in fault["loc"]]
-    where = f"{place}: {'.'.join(location) or 'top level'}"
+    named = fault["type"] in {"extra_forbidden", "missing"}  # the last part is then a key that is not to be looked up
+    keys, known = _walk(model, location[:-1] if named else location)
+    where = f"{place}: {'.'.join([*keys, *location[-1:]] if named else keys) or 'top level'}"
     if fault["type"] == "extra_forbidden":
-        known = _keys_at(model, location[:-1])
         near = difflib.get_close_matches(location[-1], known, n=1)
         remedy = f"did you mean {near[0]}?" if near else "remove it"
         return InputError(where, "an unknown key", f"one of {', '.join(known)}" if known else "no such key", remedy)
@@ -52,19 +65,31 @@ def _expected(message: str) -> str:
     return message[:1].lower() + message[1:]
 
 
-def _keys_at(model: type[Section], location: list[str]) -> list[str]:
-    """Keys of the sub-model that a location leads to, as far as the schema tells."""
+def _walk(model: type[Section], location: list[str]) -> tuple[list[str], list[str]]:
+    """The keys of a location, and those of the section there, as far as the schema tells.
+
+    A location also names the kind (`scans`, `sbet`) by which pydantic chose among sections; nobody wrote it as a key.
+    """
     definitions = model.model_json_schema(by_alias=True)
-    node = definitions
+    options, keys = _options(definitions, definitions), []
     for part in location:
-        node = _resolved(node, definitions)
-        options = [_resolved(option, definitions) for option in node.get("anyOf", node.get("oneOf", [node]))]
-        node = next((o["properties"][part] for o in options if part in o.get("properties", {})), {})
-    node = _resolved(node, definitions)
-    options = [_resolved(option, definitions) for option in node.get("anyOf", node.get("oneOf", [node]))]
-    return [key for option in options for key in option.get("properties", {})]
+        kinds = [option for option in options if _is_kind(option, part)]
+        if kinds and len(options) > 1:
+            options = kinds
+            continue
+        keys.append(part)
+        below = [option["properties"][part] for option in options if part in option.get("properties", {})]
+        options = [one for node in below for one in _options(node, definitions)]
+    return keys, list(dict.fromkeys(key for option in options for key in option.get("properties", {})))
 
 
-def _resolved(node: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any]:
+def _is_kind(option: dict[str, Any], name: str) -> bool:
+    return any(node.get("const") == name for node in option.get("properties", {}).values())
+
+
+def _options(node: dict[str, Any], definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    """The schemas that a node stands for, references followed and alternatives side by side."""
     reference = node.get("$ref")
-    return definitions["$defs"][reference.rsplit("/", 1)[-1]] if reference else node
+    node = definitions["$defs"][reference.rsplit("/", 1)[-1]] if reference else node
+    several = node.get("anyOf", node.get("oneOf"))
+    return [node] if several is None else [one for option in several for one in _options(option, definitions)]

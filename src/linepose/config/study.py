@@ -9,8 +9,9 @@ from pydantic import Field, NonNegativeInt, PositiveFloat
 from linepose.config.coverage import CoverageSection
 from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
+from linepose.likelihood.names import sampling_section
 from linepose.optimise import Search
-from linepose.sampling import SamplingSettings
+from linepose.sampling import IndependenceSettings, SamplingSettings
 
 
 class DatasetSection(Section):
@@ -60,6 +61,27 @@ class SamplingSection(Section):
         return SamplingSettings(**self.model_dump())
 
 
+class IndependenceSamplingSection(Section):
+    """Sampling where the noise model infers its levels: proposals from the fitted posterior."""
+
+    n_walkers: int = Field(24, ge=22, description="Walkers of the ensemble, two a parameter or more.")
+    n_burn_in: int = Field(160, ge=20, description="Steps that fit the proposals, thrown away.")
+    n_steps: int = Field(1000, ge=4, description="Steps kept.")
+    independent_share: float = Field(
+        0.9, gt=0, lt=1, description="Share of proposals from the fit; the rest are differential evolution."
+    )
+
+    def settings(self) -> IndependenceSettings:
+        """As the library takes it."""
+        return IndependenceSettings(**self.model_dump())
+
+
+def sampling_settings(values: dict[str, Any]) -> SamplingSettings | IndependenceSettings:
+    """The settings that one of the two sections describes, all of its keys given."""
+    section = SamplingSection if "stretch_scale" in values else IndependenceSamplingSection
+    return section.model_validate(values).settings()
+
+
 class Study(Section):
     """config/config.yaml."""
 
@@ -73,8 +95,17 @@ class Study(Section):
     seed: NonNegativeInt = Field(2017, description="Seed from which every random number is derived.")
     search: SearchSection = Field(SearchSection(), description="Optimisation.")
     outliers: OutliersSection = Field(OutliersSection(), description="Outlier removal.")
-    sampling: SamplingSection = Field(SamplingSection(), description="MCMC.")
+    sampling: SamplingSection = Field(SamplingSection(), description="MCMC of the published noise model.")
+    independence_sampling: IndependenceSamplingSection = Field(
+        IndependenceSamplingSection(), description="MCMC of the noise models shared and robust."
+    )
     coverage: CoverageSection = Field(CoverageSection(), description="Coverage study; not part of the main job.")
+
+    def sampling_of(self, noise_model: str) -> SamplingSection | IndependenceSamplingSection:
+        """The sampling section for a noise model."""
+        section = getattr(self, sampling_section(noise_model))
+        assert isinstance(section, SamplingSection | IndependenceSamplingSection)
+        return section
 
 
 def load_dataset(path: Path) -> DatasetSection:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from linepose.config.experiments import SubsetSection
+from linepose.config.experiments import RepeatabilitySection, SubsetSection
 from linepose.config.platform import Platform
 from linepose.experiments.subsets import check_subset, draw_by_rules
 from linepose.likelihood.base import Likelihood
@@ -57,9 +57,27 @@ class Reference:
 def read_accepted(platform: Platform, observations: Path | str, outliers: Path | str) -> Accepted:
     """From the results of the stages `associate` and `reject_outliers`."""
     survey = survey_from_table(read_table(observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics())
+    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
     inliers = stage_observations(read_table(outliers, OUTLIERS))["inliers"]
     return Accepted(likelihood, likelihood.select(inliers))
+
+
+def read_others(
+    others: Mapping[str, Mapping[str, object]], observations: Sequence[str], outliers: Sequence[str]
+) -> dict[str, Accepted]:
+    """The same of other platforms, by name: what their files say, and their results in the same order."""
+    files = zip(observations, outliers, strict=True)
+    return {
+        name: read_accepted(Platform.model_validate(values), *pair)
+        for (name, values), pair in zip(others.items(), files, strict=True)
+    }
+
+
+def named_pair(data: Accepted, section: RepeatabilitySection | None, file: str) -> dict[str, Sequence[int]]:
+    """Observation numbers of the two disjoint subsets that a platform's file names; none where it names none."""
+    if section is None or section.first is None or section.second is None:
+        return {}
+    return data.subsets({"subset_1": section.first, "subset_2": section.second}, f"{file}: experiments.repeatability")
 
 
 def read_reference(likelihood: Likelihood, optima: Path | str, samples: Path | str) -> Reference:

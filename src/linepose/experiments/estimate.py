@@ -7,10 +7,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from linepose.errors import EstimationError
 from linepose.likelihood.base import Likelihood
-from linepose.optimise import Optimum, Search, laplace_covariance, optimise
+from linepose.optimise import Optimum, Search, climb, laplace_covariance, optimise
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.rotations import Floats
-from linepose.sampling import SamplingSettings, sample
+from linepose.sampling import IndependenceSettings, SamplingSettings, sample
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def estimate_by_sampling(
     start: ArrayLike,
     seed: int,
     search: Search | None = None,
-    settings: SamplingSettings | None = None,
+    settings: SamplingSettings | IndependenceSettings | None = None,
 ) -> Estimate:
     """The optimum from a start pose (6,), with the covariance of samples around it."""
     optimum = optimise(likelihood, start, search)
@@ -63,11 +63,25 @@ def estimate_by_curvature(likelihood: Likelihood, start: ArrayLike, search: Sear
     The covariance is NaN where the observations leave a direction of the pose open.
     """
     optimum = optimise(likelihood, start, search)
+    return _estimate(likelihood, optimum, _curvature_or_nan(likelihood, optimum))
+
+
+def estimate_nearby(
+    likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, search: Search | None = None
+) -> Estimate:
+    """As `estimate_by_curvature`, by gradients from parameters (P,) that are nearly right: ten times cheaper again.
+
+    The search's range lies around the start pose (6,).
+    """
+    optimum = climb(likelihood, parameters, start, search)
+    return _estimate(likelihood, optimum, _curvature_or_nan(likelihood, optimum))
+
+
+def _curvature_or_nan(likelihood: Likelihood, optimum: Optimum) -> Floats:
     try:
-        covariance = laplace_covariance(likelihood, optimum.parameters)
+        return laplace_covariance(likelihood, optimum.parameters)
     except EstimationError:
-        covariance = np.full((likelihood.n_parameters, likelihood.n_parameters), np.nan)
-    return _estimate(likelihood, optimum, covariance)
+        return np.full((likelihood.n_parameters, likelihood.n_parameters), np.nan)
 
 
 def _estimate(likelihood: Likelihood, optimum: Optimum, covariance: Floats) -> Estimate:

@@ -26,7 +26,7 @@ from linepose.experiments.estimate import (
 )
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Search
-from linepose.sampling import SamplingSettings
+from linepose.sampling import IndependenceSettings, SamplingSettings
 
 
 def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> None:
@@ -62,7 +62,7 @@ def compare_subsets(
     seed: int,
     place: str,
     search: Search | None = None,
-    settings: SamplingSettings | None = None,
+    settings: SamplingSettings | IndependenceSettings | None = None,
 ) -> pd.DataFrame:
     """One row for each of two named subsets, with sampled sigmas; both tell how far apart the two are; start (6,).
 

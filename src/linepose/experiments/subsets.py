@@ -14,7 +14,7 @@ from linepose.likelihood.base import Likelihood
 from linepose.observations import EULER_COLUMNS, Survey
 from linepose.optimise import Search
 from linepose.rotations import Floats
-from linepose.sampling import SamplingSettings
+from linepose.sampling import IndependenceSettings, SamplingSettings
 
 _RAYS_PER_POINT: Final = 2
 BODY_ANGLES: Final = tuple(name.removesuffix("_rad") for name in EULER_COLUMNS)
@@ -87,7 +87,7 @@ def subset_estimates(
     start: ArrayLike,
     seed: int,
     search: Search | None = None,
-    settings: SamplingSettings | None = None,
+    settings: SamplingSettings | IndependenceSettings | None = None,
 ) -> pd.DataFrame:
     """One row a named subset: its observations, pose, sampled sigmas and -log L; start pose (6,)."""
     rows = []

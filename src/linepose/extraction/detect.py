@@ -35,6 +35,11 @@ class Detection:
     doubt: str = ""
     board_found: bool = True
 
+    @property
+    def position(self) -> Floats:
+        """Positions (n, 2) of u and line."""
+        return np.stack([self.u_px, self.line], axis=-1)
+
 
 @dataclass(frozen=True)
 class _View:

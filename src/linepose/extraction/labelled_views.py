@@ -19,8 +19,16 @@ log = logging.getLogger(__name__)
 
 
 def select_views(folder: Path, pattern: str, first: int, step: int) -> list[Path]:
-    """View files that match the pattern, sorted by name, every `step`-th from the `first` (counted from 1)."""
-    return sorted(folder.glob(pattern))[first - 1 :: step]
+    """View files that match the pattern, sorted by name, every `step`-th from the `first` (counted from 1).
+
+    Raises InputError where that leaves none.
+    """
+    found = sorted(folder.glob(pattern))
+    paths = found[first - 1 :: step]
+    if not paths:
+        remedy = "correct source.views and source.first, or put the files there"
+        raise InputError(str(folder / pattern), f"{len(found)} files", "one file a view", remedy)
+    return paths
 
 
 def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
@@ -29,8 +37,6 @@ def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
     Columns: observation, point, time_us, u_px, north_m, east_m, down_m, roll_rad, pitch_rad, yaw_rad.
     Raises InputError naming file, row and remedy for whatever cannot be used.
     """
-    if not paths:
-        raise InputError("source.views", "no file", "one file a view", "correct the pattern, first and step")
     views = []
     last_us = np.int64(0)
     for number, path in enumerate(paths, start=1):

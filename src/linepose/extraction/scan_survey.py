@@ -1,18 +1,19 @@
 """From scans to observed points: by labels that are refined, or by detection without any."""
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from linepose.errors import InputError
-from linepose.extraction.detect import detect
+from linepose.extraction.detect import Detection, detect
 from linepose.extraction.labels import check_within
 from linepose.extraction.refine import Refine, refine_points
-from linepose.extraction.scans import Scan, read_scan
+from linepose.extraction.scans import LineTimes, Scan, read_scan
 from linepose.rotations import Floats
 
 _FEWEST_OBSERVATIONS: Final = 2
@@ -32,7 +33,13 @@ def select_scans(folder: Path, pattern: str, left_out: Sequence[int]) -> dict[in
     return {number: path for number, path in enumerate(paths, start=1) if number not in left_out}
 
 
-def refined_points(scans: Mapping[int, Path], labels: pd.DataFrame, refine: Refine, n_pixels: int) -> pd.DataFrame:
+def refined_points(
+    scans: Mapping[int, Path],
+    labels: pd.DataFrame,
+    refine: Refine,
+    n_pixels: int,
+    line_times: LineTimes | None = None,
+) -> pd.DataFrame:
     """Points of every labelled scan, refined from the labels; columns as in `result_schemas.SCAN_POINTS`.
 
     Raises InputError naming a label outside its image, or one with no dot near it.
@@ -43,7 +50,7 @@ def refined_points(scans: Mapping[int, Path], labels: pd.DataFrame, refine: Refi
         if mine.empty:
             log.warning("%s: no label: left out", path)
             continue
-        scan = _read(path, n_pixels)
+        scan = _read(path, n_pixels, line_times)
         check_within(mine, scan, str(path))
         found = refine_points(refine, scan.intensity, mine[["u_px", "line"]])
         for row in np.flatnonzero(np.isnan(found[:, 0]))[:1]:
@@ -54,38 +61,48 @@ def refined_points(scans: Mapping[int, Path], labels: pd.DataFrame, refine: Refi
                 "a bright dot on dark print",
                 "correct or remove the label",
             )
-        tables.append(_table(number, scan, mine["point"].to_numpy(), found))
-    return _joined(tables, len(scans))
+        tables.append(scan_points(number, scan, mine["point"].to_numpy(), found))
+    return _joined(tables, scans)
 
 
-def detected_points(scans: Mapping[int, Path], refine: Refine, n_pixels: int) -> pd.DataFrame:
+def detected_points(
+    scans: Mapping[int, Path], refine: Refine, n_pixels: int, line_times: LineTimes | None = None
+) -> pd.DataFrame:
     """Points of every scan in which the board and its ids are found; columns as in `result_schemas.SCAN_POINTS`.
 
     A scan whose ids are in doubt is left out with a warning. Raises InputError naming a scan without a board.
     """
     tables = []
-    for number, path in scans.items():
-        scan = _read(path, n_pixels)
-        found = detect(scan, refine)
+    for number, path, scan, found in detected_in(scans, refine, n_pixels, line_times):
         if not found.board_found:
             remedy = f"add {number} to source.left_out, or label the scan"
             raise InputError(str(path), found.doubt, "a scan of the whole board", remedy)
         if found.doubt:
             log.warning("observation %d (%s) is left out: %s", number, path.name, found.doubt)
             continue
-        tables.append(_table(number, scan, found.point, np.stack([found.u_px, found.line], axis=-1)))
-    return _joined(tables, len(scans))
+        tables.append(scan_points(number, scan, found.point, found.position))
+    return _joined(tables, scans)
 
 
-def _read(path: Path, n_pixels: int) -> Scan:
-    scan = read_scan(path)
+def detected_in(
+    scans: Mapping[int, Path], refine: Refine, n_pixels: int, line_times: LineTimes | None = None
+) -> Iterator[tuple[int, Path, Scan, Detection]]:
+    """Each scan's number, path, lines and what is detected in it, one after the other."""
+    for number, path in scans.items():
+        scan = _read(path, n_pixels, line_times)
+        yield number, path, scan, detect(scan, refine)
+
+
+def _read(path: Path, n_pixels: int, line_times: LineTimes | None) -> Scan:
+    scan = read_scan(path, line_times)
     if scan.intensity.shape[1] != n_pixels:
         found, expected = f"{scan.intensity.shape[1]} pixels a line", f"{n_pixels}, as camera.n_pixels says"
         raise InputError(str(path), found, expected, "correct camera.n_pixels, or restore the scan")
     return scan
 
 
-def _table(number: int, scan: Scan, point: np.ndarray, position: Floats) -> pd.DataFrame:
+def scan_points(number: int, scan: Scan, point: NDArray[np.int64], position: Floats) -> pd.DataFrame:
+    """Points (n,) of one observation at positions (n, 2) of u and line; columns as in `result_schemas.SCAN_POINTS`."""
     return pd.DataFrame(
         {
             "observation": number,
@@ -97,12 +114,12 @@ def _table(number: int, scan: Scan, point: np.ndarray, position: Floats) -> pd.D
     )
 
 
-def _joined(tables: list[pd.DataFrame], n_scans: int) -> pd.DataFrame:
+def _joined(tables: list[pd.DataFrame], scans: Mapping[int, Path]) -> pd.DataFrame:
     tables = [table for table in tables if len(table)]
     if len(tables) < _FEWEST_OBSERVATIONS:
         raise InputError(
-            "extraction",
-            f"{len(tables)} of {n_scans} scans with known points",
+            str(next(iter(scans.values())).parent) if scans else "source.scans",
+            f"{len(tables)} of {len(scans)} scans with known points",
             f"at least {_FEWEST_OBSERVATIONS}",
             "add scans of the whole board, or label them",
         )

@@ -1,7 +1,8 @@
 """Scans: images of stacked scan lines with a time stamp for each line, read from ENVI, PNG or TIFF files.
 
 The time stamps of `NAME.hdr` (or .png, .tif) stand in `NAME-times.csv`: microseconds since 1970, one a row, below an
-optional heading. Whatever a file claims about its size is checked before memory is taken for it.
+optional heading; linepose.formats.line_times reads what devices write instead. Whatever a file claims about its size is
+checked before memory is taken for it.
 """
 
 import warnings
@@ -47,18 +48,47 @@ class Scan:
         return self.time_us[first] + np.rint((line - first) * step).astype(np.int64)
 
 
-def read_scan(path: Path) -> Scan:
-    """The scan of an ENVI header (.hdr), PNG or TIFF file, its time stamps beside it.
+LineTimes = Callable[[Path, int], NDArray[np.int64]]  # time stamps (us) of a scan file of so many lines
 
-    Raises InputError where a file is missing, truncated, of an unsupported kind, or contradicts another.
+
+def read_scan(path: Path, line_times: LineTimes | None = None) -> Scan:
+    """The scan of an ENVI header (.hdr), PNG or TIFF file, with the time stamps that `line_times` finds for it.
+
+    Without, they stand in `NAME-times.csv`. Raises InputError where a file is missing, truncated, of an unsupported
+    kind, or contradicts another.
     """
+    intensity = read_intensity(path)
+    times = line_times(path, len(intensity)) if line_times else read_line_times(times_path(path), len(intensity))
+    return Scan(intensity, times, path.stem)
+
+
+def read_intensity(path: Path) -> Intensity:
+    """Mean intensities (L, P) of a scan file, without its time stamps; raises InputError like `read_scan`."""
     if not path.is_file():
         raise InputError(str(path), "no such file", "a scan", "restore it, or correct source.scans")
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(str(path), f"file type {path.suffix!r}", f"one of {', '.join(_READERS)}", "convert the scan")
-    intensity = reader(path)
-    return Scan(intensity, read_line_times(times_path(path), len(intensity)), path.stem)
+    return reader(path)
+
+
+def scan_size(path: Path) -> tuple[int, int]:
+    """Lines and pixels of a scan, from its header alone: no intensity is read; raises InputError as `read_scan`."""
+    if not path.is_file():
+        raise InputError(str(path), "no such file", "a scan", "restore it, or correct source.scans")
+    if path.suffix.lower() == ".hdr":
+        n_lines, n_samples, _ = _open_envi(path).shape
+        return int(n_lines), int(n_samples)
+    if path.suffix.lower() not in _READERS:
+        raise InputError(str(path), f"file type {path.suffix!r}", f"one of {', '.join(_READERS)}", "convert the scan")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(path) as image:
+                return image.height, image.width
+    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, SyntaxError, ValueError) as error:
+        found = " ".join(str(error).split())
+        raise InputError(str(path), found, "a whole PNG or TIFF file", "restore the scan") from None
 
 
 def times_path(path: Path) -> Path:
@@ -68,9 +98,19 @@ def times_path(path: Path) -> Path:
 
 def read_line_times(path: Path, n_lines: int) -> NDArray[np.int64]:
     """Time stamps (n_lines,) in microseconds; raises InputError where they are too few, too many or not increasing."""
+    times, heading = read_times(path)
+    check_line_times(times, n_lines, path, heading)
+    return times
+
+
+def read_times(path: Path) -> tuple[NDArray[np.int64], int]:
+    """Whole numbers, one a row, and how many rows (0 or 1) the heading takes; raises InputError for anything else."""
     if not path.is_file():
         raise InputError(str(path), "no such file", "the time stamp of each line", "put it beside the scan")
-    rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
+    try:
+        rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
+    except UnicodeDecodeError:
+        raise InputError(str(path), "bytes that are not text", "a time stamp a row", "restore the file") from None
     heading = int(bool(rows) and rows[0] == "time_us")
     times = np.empty(len(rows) - heading, dtype=np.int64)
     for index, cell in enumerate(rows[heading:]):
@@ -79,16 +119,23 @@ def read_line_times(path: Path, n_lines: int) -> NDArray[np.int64]:
         except (ValueError, OverflowError):
             place, found = f"{path}, row {index + heading + 1}", repr(cell[:_BRIEFLY])
             raise InputError(place, found, "a whole number of microseconds", "mend the row") from None
+    return times, heading
+
+
+def check_line_times(times: NDArray[np.int64], n_lines: int, path: Path, heading: int) -> None:
+    """Raise InputError where the time stamps (us) are not one a line, or not increasing.
+
+    `heading` is the number of rows above the first of them in the file.
+    """
     if len(times) != n_lines:
         remedy = "restore the file that is incomplete"
         raise InputError(str(path), f"{len(times)} time stamps", f"{n_lines}, one for each line of the scan", remedy)
-    check_microseconds(times, path)
+    check_microseconds(times, path, first_row=heading + 1)
     backwards = np.flatnonzero(np.diff(times) <= 0)
     if backwards.size:
         row = int(backwards[0]) + 1
         place, expected = f"{path}, row {row + heading + 1}", f"a time after the line before it ({times[row - 1]})"
         raise InputError(place, f"time {times[row]}", expected, "correct the camera's clock or remove the lines")
-    return times
 
 
 def spectral_mean(path: Path) -> Intensity:
@@ -148,11 +195,15 @@ def _open_envi(path: Path) -> SpyFile:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             image: SpyFile = envi.open(str(path.resolve()))
+    except envi.EnviDataFileNotFoundError:
+        expected = f"{path.stem}.{interleave}, .img, .dat, .raw or .bin beside it"
+        raise InputError(str(path), "no data file", expected, "put the data file there") from None
     except (SpyException, ValueError, OSError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "an ENVI header with its data file beside it", "restore both") from None
     n_values = sizes["lines"] * sizes["samples"] * sizes["bands"]
-    _check_data_size(Path(image.filename), offset + n_values * np.dtype(image.dtype).itemsize, sizes)
+    data_path = path.with_name(Path(image.filename).name)
+    _check_data_size(data_path, offset + n_values * np.dtype(image.dtype).itemsize, sizes)
     return image
 
 

@@ -1,9 +1,9 @@
 """Every figure: its name, what it shows in words, how it is drawn from a platform's results, and its caption."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
+import pandas as pd
 from matplotlib.figure import Figure
 
 from linepose import experiment_schemas, result_schemas
@@ -22,24 +22,10 @@ from linepose.figures import (
     trace,
     uncertainty,
 )
+from linepose.figures.entry import CatalogueEntry, without
+from linepose.figures.noise_catalogue import NOISE_FIGURES
 from linepose.figures.results import PlatformResults
-from linepose.figures.scan_example import scan_example
-
-
-@dataclass(frozen=True)
-class CatalogueEntry:
-    """One figure: file stem, title, the paper's figure or nothing, what it shows, and how it is made.
-
-    `left_out` says in a sentence why a platform has none of it, and is empty where it should have one.
-    """
-
-    name: str
-    title: str
-    paper_figure: str
-    shows: str
-    draw: Callable[[PlatformResults], Figure]
-    caption: Callable[[PlatformResults], str]
-    left_out: Callable[[Platform], str] = lambda _: ""
+from linepose.figures.scan_example import scan_examples
 
 
 def _mapping(r: PlatformResults) -> Figure:
@@ -52,7 +38,8 @@ def _mapping(r: PlatformResults) -> Figure:
 def _angle_error(r: PlatformResults) -> Figure:
     points = r.table("estimated_points", result_schemas.ESTIMATED_POINTS)
     mapped = r.table("mapping", experiment_schemas.MAPPING)
-    return mapping.angle_error(mapped, points, r.table("observations", result_schemas.OBSERVATIONS), _angle_deg(r))
+    observations = r.table("observations", result_schemas.OBSERVATIONS)
+    return mapping.angle_error(mapped, points, observations, _angle_deg(r), r.true_points_m)
 
 
 def _angle_deg(r: PlatformResults) -> float:
@@ -77,9 +64,13 @@ def _sketch(r: PlatformResults) -> Figure:
     return platform_sketch.platform_sketch(r.samples(), r.platform.outline, r.marked_poses())
 
 
-def _repeatability(r: PlatformResults) -> Figure:
-    pair = r.table("repeatability", experiment_schemas.REPEATABILITY) if r.has("repeatability") else None
-    return repeatability.repeatability(r.table("splits", experiment_schemas.SPLITS), pair)
+def _named_pair(r: PlatformResults) -> pd.DataFrame | None:
+    return r.table("repeatability", experiment_schemas.REPEATABILITY) if r.has("repeatability") else None
+
+
+def _trace(r: PlatformResults) -> Figure:
+    marked = {name: pose for name, pose in r.marked_poses().items() if name != "hand measured"}
+    return trace.trace(r.samples(), marked)
 
 
 def _diagnostics_caption(r: PlatformResults) -> str:
@@ -93,31 +84,6 @@ def _residuals(by: str) -> Callable[[PlatformResults], Figure]:
 
 def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
     return lambda r: residuals.residuals_caption(r.table("residuals", result_schemas.RESIDUALS), by)
-
-
-def _stacked_scan(r: PlatformResults) -> Figure:
-    example = scan_example(r)
-    return scan.stacked_scan(example.intensity, example.points)
-
-
-def _stacked_scan_caption(r: PlatformResults) -> str:
-    example = scan_example(r)
-    return scan.stacked_scan_caption(example.intensity, example.observation)
-
-
-def _labelled_points(r: PlatformResults) -> Figure:
-    example = scan_example(r)
-    return scan.labelled_points(example.intensity, example.points)
-
-
-def _labelled_points_caption(r: PlatformResults) -> str:
-    example = scan_example(r)
-    return scan.labelled_points_caption(example.points, example.observation)
-
-
-def _without(key: str) -> Callable[[Platform], str]:
-    told = f"This experiment was not asked for: experiments.{key} is null in the platform's file."
-    return lambda platform: "" if getattr(platform.experiments, key) else told
 
 
 def _without_splits(platform: Platform) -> str:
@@ -136,6 +102,11 @@ def _without_scans(platform: Platform) -> str:
     return told if kind == "labelled_views" else ""
 
 
+def _without_truth(platform: Platform) -> str:
+    told = "Detection is tried beside the labels only where the truth is known: in simulated platforms."
+    return "" if platform.simulation else told
+
+
 FIGURES: Final = (
     CatalogueEntry(
         "survey_plan",
@@ -151,19 +122,28 @@ FIGURES: Final = (
         "stacked_scan",
         "Stacked scan",
         "Figure 6",
-        "grey image of one observation's scan lines with the pattern framed",
-        _stacked_scan,
-        _stacked_scan_caption,
+        "grey images of a few observations' scan lines with the pattern's sheet framed",
+        lambda r: scan.stacked_scan(scan_examples(r, "points")),
+        lambda r: scan.stacked_scan_caption(scan_examples(r, "points")),
         _without_scans,
     ),
     CatalogueEntry(
         "labelled_points",
         "Points found in the scan",
         "Figure 7",
-        "close-up of the pattern in a scan, each point crossed and numbered",
-        _labelled_points,
-        _labelled_points_caption,
+        "close-ups of the pattern in scans, each point crossed and numbered",
+        lambda r: scan.points_in_scan(scan_examples(r, "points")),
+        lambda r: scan.labelled_points_caption(scan_examples(r, "points")),
         _without_scans,
+    ),
+    CatalogueEntry(
+        "detected_points",
+        "Points detected without labels",
+        "",
+        "close-ups of the pattern in scans, each detected point crossed and numbered",
+        lambda r: scan.points_in_scan(scan_examples(r, "detected_points")),
+        lambda r: scan.detected_points_caption(scan_examples(r, "detected_points")),
+        _without_truth,
     ),
     CatalogueEntry(
         "outliers",
@@ -215,7 +195,7 @@ FIGURES: Final = (
         lambda r: mapping.mapping_caption(
             r.table("mapping_summary", experiment_schemas.MAPPING_SUMMARY), r.accepted()[0]
         ),
-        _without("mapping"),
+        without("mapping"),
     ),
     CatalogueEntry(
         "angle_error",
@@ -226,7 +206,7 @@ FIGURES: Final = (
         lambda r: mapping.angle_error_caption(
             r.table("mapping_summary", experiment_schemas.MAPPING_SUMMARY), _angle_deg(r)
         ),
-        _without("mapping"),
+        without("mapping"),
     ),
     CatalogueEntry(
         "basin",
@@ -235,14 +215,14 @@ FIGURES: Final = (
         "grid of starts over distance and angle, coloured by whether the search found the optimum",
         _basin,
         _basin_caption,
-        _without("basin"),
+        without("basin"),
     ),
     CatalogueEntry(
         "trace",
         "Trace of the chain",
         "",
         "each pose parameter over the steps of the chain",
-        lambda r: trace.trace(r.samples(), r.pose("inliers")),
+        _trace,
         lambda r: trace.trace_caption(r.table("diagnostics", result_schemas.DIAGNOSTICS)),
     ),
     CatalogueEntry(
@@ -274,8 +254,9 @@ FIGURES: Final = (
         "Repeatability",
         "",
         "histogram of the distance between poses from disjoint halves of the observations",
-        _repeatability,
-        lambda r: repeatability.repeatability_caption(r.table("splits", experiment_schemas.SPLITS)),
+        lambda r: repeatability.repeatability(r.table("splits", experiment_schemas.SPLITS), _named_pair(r)),
+        lambda r: repeatability.repeatability_caption(r.table("splits", experiment_schemas.SPLITS), _named_pair(r)),
         _without_splits,
     ),
+    *NOISE_FIGURES,
 )

@@ -10,15 +10,14 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from linepose.figures.checks import usable_rows
-from linepose.figures.style import ESTIMATE, HAND_MEASURED, TRUTH, WIDE_IN, styled
+from linepose.figures.checks import usable_chain
+from linepose.figures.style import POSE_MARKS, WIDE_IN, pose_handles, styled
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.rotations import Floats
 
 LABELS = ("$r_x$ (m)", "$r_y$ (m)", "$r_z$ (m)", r"$\theta e_x$ (rad)", r"$\theta e_y$ (rad)", r"$\theta e_z$ (rad)")
-_TICK_MARGIN = 0.12
+_TICK_MARGIN = 0.15
 _SHADE = "#777777"
-_MARKS = {"optimum": (ESTIMATE, "s"), "hand measured": (HAND_MEASURED, "D"), "truth": (TRUTH, "o")}
 
 
 @styled
@@ -27,7 +26,7 @@ def corner_plot(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figur
 
     `samples` as in `result_schemas.SAMPLES`; contours hold 39, 68 and 95 % of the samples, dashes 16, 50 and 84 %.
     """
-    chain = usable_rows(samples, POSE_COLUMNS, "samples")[list(POSE_COLUMNS)].to_numpy()
+    chain = usable_chain(samples)
     poses = {name: np.asarray(pose, dtype=float) for name, pose in marked.items()}
     figure = Figure(figsize=(WIDE_IN, WIDE_IN))
     corner.corner(
@@ -43,18 +42,17 @@ def corner_plot(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figur
         fill_contours=True,
         contour_kwargs={"linewidths": 0.6},
         hist_kwargs={"linewidth": 0.8},
-        max_n_ticks=3,
     )
     for name, pose in poses.items():
-        colour, marker = _MARKS[name]
-        corner.overplot_lines(figure, pose, color=colour, linewidth=0.8)
-        corner.overplot_points(figure, pose[None], color=colour, marker=marker, markersize=3.5)
+        colour, marker = POSE_MARKS[name]
+        corner.overplot_lines(figure, pose, color=colour, linewidth=0.7)
+        corner.overplot_points(figure, pose[None], color=colour, marker=marker, markersize=3.0)
     for line in (line for axes in figure.axes for line in axes.lines if line.get_linestyle() == "--"):
-        line.set_linewidth(0.7)
+        line.set_linewidth(0.6)
     _label(figure)
-    handles = [Line2D([], [], color=_MARKS[name][0], marker=_MARKS[name][1], label=name) for name in poses]
     contours = Line2D([], [], color=_SHADE, label="39, 68, 95 % of the samples")
-    figure.legend(handles=[*handles, contours], loc="upper right", bbox_to_anchor=(0.98, 0.97), fontsize=8)
+    quantiles = Line2D([], [], color=_SHADE, linestyle="--", linewidth=0.8, label="16, 50, 84 %")
+    figure.legend(handles=[*pose_handles(poses), contours, quantiles], loc="upper right", bbox_to_anchor=(0.99, 0.98))
     return figure
 
 
@@ -72,30 +70,37 @@ def _label(figure: Figure) -> None:
         for column in range(row + 1):
             one = axes[row, column]
             one.grid(visible=False)
-            one.tick_params(labelsize=6, length=2, pad=1)
-            one.tick_params(axis="x", labelrotation=45)
-            one.tick_params(axis="y", labelrotation=0)
-            one.set_xticks(_inner_ticks(*one.get_xlim()))
+            one.tick_params(length=2, pad=1)
+            one.set_xticks(two_ticks(*one.get_xlim()))
+            for text in one.get_xticklabels():
+                text.set(rotation=45, ha="right", rotation_mode="anchor")
             if row > column:
-                one.set_yticks(_inner_ticks(*one.get_ylim()))
+                one.set_yticks(two_ticks(*one.get_ylim()))
+            for text in one.get_yticklabels():
+                text.set(rotation=0)
             if row == N_PARAMETERS - 1:
                 one.set_xlabel(LABELS[column])
-                one.xaxis.set_label_coords(0.5, -0.55)
+                one.xaxis.set_label_coords(0.5, -0.66)
             if column == 0 and row:
                 one.set_ylabel(LABELS[row])
-                one.yaxis.set_label_coords(-0.5, 0.5)
-    figure.subplots_adjust(left=0.13, bottom=0.115, right=0.975, top=0.99, wspace=0.06, hspace=0.06)
+                one.yaxis.set_label_coords(-0.66, 0.5)
+    figure.subplots_adjust(left=0.155, bottom=0.14, right=0.985, top=0.985, wspace=0.07, hspace=0.07)
 
 
-def _inner_ticks(low: float, high: float) -> list[float]:
-    """Round numbers that keep clear of the panel's ends, where the next panel's labels are."""
+def two_ticks(low: float, high: float) -> list[float]:
+    """Two round numbers as far apart as they go, clear of the panel's ends, where the next panel's labels are."""
     margin = _TICK_MARGIN * (high - low)
-    return [float(tick) for tick in MaxNLocator(4).tick_values(low, high) if low + margin <= tick <= high - margin]
+    inner = [
+        tick
+        for tick in MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high)
+        if low + margin <= tick <= high - margin
+    ]
+    return [float(tick) for tick in dict.fromkeys((inner[0], inner[-1]))] if inner else [(low + high) / 2]
 
 
 def corner_plot_caption(samples: pd.DataFrame) -> str:
     """How many samples, and the strongest correlation among the parameters."""
-    chain = samples[list(POSE_COLUMNS)].to_numpy()
+    chain = usable_chain(samples)
     correlation = np.corrcoef(chain.T) - np.eye(N_PARAMETERS)
     i, j = np.unravel_index(int(np.abs(correlation).argmax()), correlation.shape)
     first, second = (POSE_COLUMNS[k].rsplit("_", 1)[0] for k in sorted((i, j)))

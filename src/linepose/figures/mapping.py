@@ -44,10 +44,8 @@ def mapping(
         flat = view.flat(table[list(PROJECTED_COLUMNS)])
         upper.scatter(flat[:, 0], flat[:, 1], s=size, color=colour, linewidths=0, label=label)
     upper.plot(*points.T, "+", color=GREEN, markersize=7, markeredgewidth=1.3, label="estimated points")
-    if true_points_m is not None:
-        truth = view.flat(true_points_m)
-        for panel in (upper, lower):
-            panel.plot(*truth.T, "o", color=BLACK, markersize=8, markeredgewidth=0.7, fillstyle="none", label="truth")
+    for panel in (upper, lower):
+        _circle_truth(panel, view, true_points_m)
     upper.set_title("all observations", loc="left")
     one = after[after["observation"] == example]
     for centre, covariance in zip(view.flat(one[list(PROJECTED_COLUMNS)]), _covariances(one, view), strict=True):
@@ -60,13 +58,22 @@ def mapping(
     _finish(lower, view, np.concatenate([points, *_reach(one, view)]))
     handles, _ = upper.get_legend_handles_labels()
     handles.append(Line2D([], [], color=RED, linewidth=0.8, label="1 sigma"))
-    figure.legend(handles=handles, loc="outside upper center", ncols=2, markerscale=1.5)
+    figure.legend(handles=handles, loc="outside upper center", ncols=2)
     return figure
 
 
 @styled
-def angle_error(mapped: pd.DataFrame, estimated: pd.DataFrame, observations: pd.DataFrame, angle_deg: float) -> Figure:
-    """All projections under the calibrated pose (red) and under the same turned by an angle about each axis (grey)."""
+def angle_error(
+    mapped: pd.DataFrame,
+    estimated: pd.DataFrame,
+    observations: pd.DataFrame,
+    angle_deg: float,
+    true_points_m: Floats | None = None,
+) -> Figure:
+    """All projections under the calibrated pose (red) and under the same turned by an angle about each axis (grey).
+
+    Tables as in `mapping`.
+    """
     view, points = _view(estimated, observations)
     turned, after = (_poses(mapped, name) for name in ("perturbed", "calibrated"))
     figure = blank_figure(HALF_PAGE_IN, HALF_PAGE_IN * _PANEL_ASPECT + 0.5)
@@ -79,8 +86,9 @@ def angle_error(mapped: pd.DataFrame, estimated: pd.DataFrame, observations: pd.
     axes.plot(
         *points.T, "+", color=GREEN, markersize=7, markeredgewidth=1.3, linestyle="none", label="estimated points"
     )
+    _circle_truth(axes, view, true_points_m)
     _finish(axes, view, np.concatenate([*flat, points]))
-    figure.legend(loc="outside upper center", ncols=2, markerscale=1.5)
+    figure.legend(loc="outside upper center", ncols=2)
     return figure
 
 
@@ -92,7 +100,8 @@ def mapping_caption(summary: pd.DataFrame, example: int) -> str:
         "The pattern's points, projected to its plane from every observation with the hand-measured (grey) and with "
         f"the calibrated pose (red). The projections of one point scatter by {before:.0f} mm before and {after:.0f} mm "
         f"after (RMS over all observations; {accepted:.0f} mm over the accepted ones). Below, observation {example} "
-        "alone with the 1-sigma ellipses that follow from pose, navigation and pixel errors."
+        "alone with the 1-sigma ellipses that follow from pose, navigation and pixel errors. Zero is the points' "
+        "centre."
     )
 
 
@@ -107,7 +116,8 @@ def angle_error_caption(summary: pd.DataFrame, angle_deg: float) -> str:
 
 def _spread_mm(summary: pd.DataFrame, pose: str, observations: str) -> float:
     rows = usable_rows(summary, ["pose", "observations", "spread_mm"], "mapping_summary.parquet")
-    return float(rows[(rows["pose"] == pose) & (rows["observations"] == observations)]["spread_mm"].iloc[0])
+    rows = rows[(rows["pose"] == pose) & (rows["observations"] == observations)]
+    return float(usable_rows(rows, ["spread_mm"], f"mapping_summary.parquet, pose {pose}")["spread_mm"].iloc[0])
 
 
 def _view(estimated: pd.DataFrame, observations: pd.DataFrame) -> tuple[PlaneView, Floats]:
@@ -122,6 +132,19 @@ def _poses(mapped: pd.DataFrame, pose: str) -> pd.DataFrame:
     columns = ["pose", "observation", *PROJECTED_COLUMNS, *PROJECTED_COVARIANCE_COLUMNS]
     rows = usable_rows(mapped.dropna(), columns, "mapping.parquet")  # a ray that misses the plane has no projection
     return usable_rows(rows[rows["pose"] == pose], columns, f"mapping.parquet, pose {pose}")
+
+
+def _circle_truth(axes: Axes, view: PlaneView, true_points_m: Floats | None) -> None:
+    if true_points_m is not None:
+        axes.plot(
+            *view.flat(true_points_m).T,
+            "o",
+            color=BLACK,
+            markersize=8,
+            markeredgewidth=0.7,
+            fillstyle="none",
+            label="true points",
+        )
 
 
 def _covariances(rows: pd.DataFrame, view: PlaneView) -> Floats:

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
-from linepose.figures.checks import usable_rows
+from linepose.figures.checks import accepted_rows, usable_rows
 from linepose.figures.style import RED, WIDE_IN, blank_figure, styled
 from linepose.outliers import removal_order
 
@@ -26,7 +26,7 @@ def outlier_matrix(outliers: pd.DataFrame) -> Figure:
         ascending=False
     )
     sizes, numbers = errors.index.to_numpy(), errors.columns.to_numpy()
-    figure = blank_figure(WIDE_IN, 1.3 + 0.16 * len(sizes))
+    figure = blank_figure(WIDE_IN, 1.4 + 0.15 * len(sizes))
     axes = figure.add_subplot()
     axes.grid(visible=False)
     edges = np.arange(len(numbers) + 1) - 0.5, np.arange(len(sizes) + 1) - 0.5
@@ -45,7 +45,7 @@ def outlier_matrix(outliers: pd.DataFrame) -> Figure:
         color=RED,
         label="removed next",
     )
-    accepted = int(np.flatnonzero(sizes == table.loc[table["accepted"], "n_observations"].iloc[0])[0])
+    accepted = int(np.flatnonzero(sizes == accepted_rows(table)["n_observations"].iloc[0])[0])
     frame = Rectangle((-0.5, accepted - 0.5), len(numbers), 1, fill=False, edgecolor=RED, linewidth=1.8)
     frame.set(label="accepted", clip_on=False, zorder=3)
     axes.add_patch(frame)
@@ -56,18 +56,20 @@ def outlier_matrix(outliers: pd.DataFrame) -> Figure:
     axes.set(xlabel="Observation", ylabel="Observations used")
     axes.set_xlim(-0.5, len(numbers) - 0.5)
     axes.set_ylim(len(sizes) - 0.5, -0.5)
-    bar = figure.colorbar(mesh, ax=axes, label="Mean reprojection error (px)", pad=0.02)
-    bar.ax.yaxis.set_major_locator(LogLocator(10, (1, 2, 5)))
-    bar.ax.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    bar = figure.colorbar(
+        mesh, ax=axes, label="Mean reprojection error (px)", location="bottom", pad=0.02, aspect=40, shrink=0.7
+    )
+    bar.ax.xaxis.set_major_locator(LogLocator(10, (1, 2, 5)))
+    bar.ax.xaxis.set_major_formatter(FormatStrFormatter("%g"))
     bar.ax.minorticks_off()
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=2)
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
 
 
 def outlier_matrix_caption(outliers: pd.DataFrame, threshold_px: float) -> str:
     """What was removed, in which order, and what remains."""
+    accepted = accepted_rows(outliers)
     order = removal_order(outliers)
-    accepted = outliers[outliers["accepted"]]
     first = outliers[outliers["n_observations"] == outliers["n_observations"].max()]
     removed = f"Removed in this order: {', '.join(map(str, order))}." if order else "None was removed."
     return (

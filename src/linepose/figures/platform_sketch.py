@@ -1,6 +1,7 @@
 """Figure 12: the sampled poses on a sketch of the platform."""
 
 from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
 import pandas as pd
@@ -9,54 +10,82 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle
+from matplotlib.patches import Circle, Rectangle
 from numpy.typing import ArrayLike
 
 from linepose.config.outline import OutlineSection, OutlineViewSection
-from linepose.figures.checks import some_rows, usable_rows
-from linepose.figures.style import BLACK, BLUE, ESTIMATE, HAND_MEASURED, TRUTH, WIDE_IN, blank_figure, few_ticks, styled
-from linepose.pose import POSE_COLUMNS
+from linepose.figures.checks import some_rows, usable_chain
+from linepose.figures.style import (
+    BLACK,
+    BLUE,
+    ON_A_CLOUD,
+    POSE_MARKS,
+    WIDE_IN,
+    blank_figure,
+    few_ticks,
+    pose_handles,
+    styled,
+)
 from linepose.rotations import Floats, matrix_from_rotation_vector
 
-_MARKS = {"optimum": (ESTIMATE, "s"), "hand measured": (HAND_MEASURED, "D"), "truth": (TRUTH, "o")}
-_SHOWN_AXES = 200
-_AXIS_LENGTH_M = 1.5
-_BINS = 40
-_DENSITY = LinearSegmentedColormap.from_list("density", [(0, 0.45, 0.7, 0.0), (0, 0.45, 0.7, 1.0)])
+_SHOWN_AXES: Final = 200
+_AXIS_LENGTH_M: Final = 1.5
+_BINS: Final = 40
+_CLOSE_SIGMAS: Final = 3.5  # half the width of the close-up
+_DENSITY: Final = LinearSegmentedColormap.from_list("density", [(0, 0, 0, 0), (0.35, 0.35, 0.35, 0.8), (0, 0, 0, 1)])
 
 
 @styled
 def platform_sketch(samples: pd.DataFrame, outline: OutlineSection, marked: Mapping[str, ArrayLike]) -> Figure:
-    """From the side and from the front: where the camera is (2D histogram), where it looks (lines), the marked poses.
+    """From the side and from the front, whole and close up: the camera's position as a 2D histogram, its optical axes.
 
     `samples` as in `result_schemas.SAMPLES`; `marked` has poses (6,) by name: optimum, hand measured, truth.
     """
-    chain = usable_rows(samples, POSE_COLUMNS, "samples")[list(POSE_COLUMNS)].to_numpy()
-    thin = some_rows(chain, _SHOWN_AXES)
-    figure = blank_figure(WIDE_IN, 2.6)
-    panels = figure.subplots(1, 2)
-    for panel, axis, view, label, title in (
-        (panels[0], 0, outline.side, "Forward (m)", "side"),
-        (panels[1], 1, outline.front, "Right (m)", "front"),
+    chain = usable_chain(samples)
+    poses = {name: np.asarray(pose, dtype=float) for name, pose in marked.items()}
+    figure = blank_figure(WIDE_IN, 4.4)
+    panels = figure.subplots(2, 2)
+    half_m = _CLOSE_SIGMAS * float(chain[:, :3].std(axis=0).max())
+    for column, (axis, view, label, title) in enumerate(
+        ((0, outline.side, "Forward (m)", "side"), (1, outline.front, "Right (m)", "front"))
     ):
-        _draw_outline(panel, view)
-        panel.add_collection(LineCollection(list(_optical_axes(thin, axis)), colors=BLUE, alpha=0.05, linewidths=1.0))
-        panel.hist2d(chain[:, axis], -chain[:, 2], bins=_BINS, cmap=_DENSITY, zorder=3)
-        for name, pose in marked.items():
-            one = np.asarray(pose, dtype=float)
-            colour, marker = _MARKS[name]
-            panel.add_collection(LineCollection(list(_optical_axes(one[None], axis)), colors=colour, linewidths=1.0))
-            panel.plot(one[axis], -one[2], marker=marker, color=colour, markersize=3, zorder=4)
-        panel.set_aspect("equal", adjustable="datalim")
-        panel.autoscale_view()
-        panel.set(xlabel=label, ylabel="Up (m)")
-        panel.set_title(title, loc="left")
-        few_ticks(panel)
-    panels[1].invert_xaxis()
-    handles = [Line2D([], [], color=_MARKS[name][0], marker=_MARKS[name][1], label=name) for name in marked]
-    handles += [Line2D([], [], color=BLUE, alpha=0.35, linewidth=3, label="sampled poses, optical axes")]
-    figure.legend(handles=handles, loc="outside upper center", ncols=4, columnspacing=1.0)
+        centre = (float(chain[:, axis].mean()), -float(chain[:, 2].mean()))
+        whole, close = panels[:, column]
+        for panel in (whole, close):
+            _draw_outline(panel, view)
+            _draw_poses(panel, chain, poses, axis)
+            panel.set(xlabel=label, ylabel="Up (m)")
+            few_ticks(panel, 4)
+        whole.add_patch(_frame(centre, half_m))
+        whole.set_aspect("equal", adjustable="datalim")
+        whole.autoscale_view()
+        whole.set_title(title, loc="left")
+        close.set(xlim=(centre[0] - half_m, centre[0] + half_m), ylim=(centre[1] - half_m, centre[1] + half_m))
+        close.set_aspect("equal")
+        close.set_title(f"{title}, close-up", loc="left")
+    for panel in panels[:, 1]:
+        panel.invert_xaxis()
+    handles = pose_handles(poses)
+    handles.append(Line2D([], [], color=BLUE, alpha=0.35, linewidth=3, label="sampled optical axes"))
+    handles.append(Line2D([], [], color=BLACK, marker="s", linestyle="none", label="sampled positions"))
+    figure.legend(handles=handles, loc="outside upper center", ncols=3, columnspacing=1.0)
     return figure
+
+
+def _draw_poses(panel: Axes, chain: Floats, poses: Mapping[str, Floats], axis: int) -> None:
+    lines = list(_optical_axes(some_rows(chain, _SHOWN_AXES), axis))
+    panel.add_collection(LineCollection(lines, colors=BLUE, alpha=0.05, linewidths=1.0))
+    panel.hist2d(chain[:, axis], -chain[:, 2], bins=_BINS, cmap=_DENSITY, zorder=3)
+    for name, one in poses.items():
+        colour, marker = POSE_MARKS[name]
+        panel.add_collection(LineCollection(list(_optical_axes(one[None], axis)), colors=colour, linewidths=1.0))
+        panel.plot(one[axis], -one[2], marker=marker, color=colour, zorder=4, **ON_A_CLOUD)
+
+
+def _frame(centre: tuple[float, float], half_m: float) -> Rectangle:
+    """Where the close-up is."""
+    corner = (centre[0] - half_m, centre[1] - half_m)
+    return Rectangle(corner, 2 * half_m, 2 * half_m, fill=False, edgecolor=BLACK, linewidth=0.5, linestyle=":")
 
 
 def _optical_axes(poses: Floats, axis: int) -> Floats:
@@ -76,9 +105,10 @@ def _draw_outline(panel: Axes, view: OutlineViewSection) -> None:
 
 def platform_sketch_caption(samples: pd.DataFrame) -> str:
     """How large the cloud of camera positions is, and that the outline is a sketch."""
-    sigma_mm = 1e3 * samples[list(POSE_COLUMNS[:3])].std().to_numpy()
+    sigma_mm = 1e3 * usable_chain(samples)[:, :3].std(axis=0, ddof=1)
     return (
-        "The sampled camera positions (shaded) and optical axes (lines) on the platform, seen from the side and from "
-        f"the front. The positions scatter by {sigma_mm[0]:.0f} mm forward, {sigma_mm[1]:.0f} mm to the right and "
-        f"{sigma_mm[2]:.0f} mm down. The outline is a sketch for orientation, not to the millimetre."
+        "The sampled camera positions (shaded by density) and optical axes (lines) on the platform, seen from the side "
+        "and from the front; below, the dotted squares close up. The positions scatter by "
+        f"{sigma_mm[0]:.0f} mm forward, {sigma_mm[1]:.0f} mm to the right and {sigma_mm[2]:.0f} mm down. The outline "
+        "is a sketch for orientation, not to the millimetre."
     )

@@ -5,7 +5,8 @@ from pathlib import Path
 import pandas as pd
 
 from linepose.errors import LineposeError
-from linepose.figures.catalogue import FIGURES, CatalogueEntry
+from linepose.figures.catalogue import FIGURES
+from linepose.figures.entry import CatalogueEntry
 from linepose.figures.results import PlatformResults
 from linepose.figures.style import save
 

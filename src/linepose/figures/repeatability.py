@@ -20,11 +20,7 @@ def repeatability(splits: pd.DataFrame, pair: pd.DataFrame | None = None) -> Fig
     `splits` as in `experiment_schemas.SPLITS`; `pair` as in `REPEATABILITY` adds the distance of two named subsets.
     """
     distance = _distances(splits)
-    named = (
-        None
-        if pair is None
-        else float(usable_rows(pair, ["mahalanobis"], "repeatability.parquet")["mahalanobis"].iloc[0])
-    )
+    named = _named_distance(pair)
     most = 1.05 * max(float(distance.max()), 5.0, named or 0.0)
     figure = blank_figure(HALF_PAGE_IN, 2.7)
     axes = figure.add_subplot()
@@ -46,17 +42,27 @@ def repeatability(splits: pd.DataFrame, pair: pd.DataFrame | None = None) -> Fig
     return figure
 
 
-def repeatability_caption(splits: pd.DataFrame) -> str:
-    """The median distance, and what it says of the sigmas."""
+def repeatability_caption(splits: pd.DataFrame, pair: pd.DataFrame | None = None) -> str:
+    """The median distance, what it says of the sigmas, and the distance of two named subsets."""
     distance, factor = _distances(splits), sigma_factor(splits)
     left = len(splits) - len(distance)
     open_ones = f" {left} splits left a direction of the pose open and are not shown." if left else ""
+    named = _named_distance(pair)
+    subsets = "" if named is None else f" The two named subsets are {named:.2f} apart."
     return (
         "Distance between the poses from two disjoint halves of the accepted observations, in sigmas, over random "
         f"splits. The median is {np.median(distance):.2f}, where right sigmas give {chi.median(N_PARAMETERS):.2f}: the "
         f"sigmas are {'too small' if factor > 1 else 'too large'} by a factor of "
-        f"{max(factor, 1 / factor):.2f}.{open_ones}"
+        f"{max(factor, 1 / factor):.2f}.{open_ones}{subsets}"
     )
+
+
+def _named_distance(pair: pd.DataFrame | None) -> float | None:
+    """Distance of the two named subsets; none where there are none, or where one of them leaves its pose open."""
+    if pair is None:
+        return None
+    known = usable_rows(pair, ["subset"], "repeatability.parquet")["mahalanobis"].dropna()
+    return None if known.empty else float(known.iloc[0])
 
 
 def _distances(splits: pd.DataFrame) -> Floats:

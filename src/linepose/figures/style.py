@@ -1,6 +1,6 @@
 """How every figure looks: sizes, fonts, colours that colour-blind readers can tell apart, and files without dates."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
 from typing import Any, Final, ParamSpec
@@ -8,12 +8,14 @@ from typing import Any, Final, ParamSpec
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from linepose.storage import whole_file
 
 HALF_PAGE_IN: Final = 3.5
-WIDE_IN: Final = 5.2  # for several panels: still read when printed at half a page
+WIDE_IN: Final = 4.6  # for several panels: still read when printed at half a page
+LEAST_PT: Final = 5.5  # of any text, printed at half a page
 PNG_DPI: Final = 200
 
 # Okabe and Ito's colours.
@@ -27,19 +29,19 @@ RED: Final = "#D55E00"
 SKY: Final = "#56B4E9"
 SEQUENTIAL: Final = "viridis"
 
-# One colour for one thing in all figures.
-ESTIMATE: Final = BLUE
-HAND_MEASURED: Final = RED
-TRUTH: Final = GREEN
+# One colour and shape for one pose in all figures, by its name in the legend.
+POSE_MARKS: Final = {"optimum": (BLUE, "s"), "hand measured": (RED, "D"), "truth": (GREEN, "o")}
+
+ON_A_CLOUD: Final[Any] = {"markersize": 5, "markeredgecolor": "white", "markeredgewidth": 0.6}
 
 _STYLE: Final[Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 8,
     "axes.titlesize": 8,
     "axes.labelsize": 8,
-    "xtick.labelsize": 7,
-    "ytick.labelsize": 7,
-    "legend.fontsize": 7,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.5,
     "legend.frameon": True,
     "legend.framealpha": 0.85,
     "legend.edgecolor": "none",
@@ -78,6 +80,14 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 def blank_figure(width_in: float, height_in: float) -> Figure:
     """An empty figure whose panels make room for their labels."""
     return Figure(figsize=(width_in, height_in), layout="constrained")
+
+
+def pose_handles(names: Iterable[str]) -> list[Line2D]:
+    """Legend entries of marked poses."""
+    return [
+        Line2D([], [], color=POSE_MARKS[name][0], marker=POSE_MARKS[name][1], linewidth=1.0, label=name)
+        for name in names
+    ]
 
 
 def few_ticks(axes: Axes, most: int = 5) -> None:

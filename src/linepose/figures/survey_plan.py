@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
@@ -30,7 +31,7 @@ def survey_plan(survey: Survey, accepted: list[int], estimated: pd.DataFrame) ->
     plan = (np.nanmean(survey.position_m, axis=1) - centre)[:, [1, 0]]
     tilt_deg, heading = tilt_and_heading(survey)
     kept = np.isin(survey.number, accepted)
-    figure = blank_figure(HALF_PAGE_IN, HALF_PAGE_IN + 0.35)
+    figure = blank_figure(HALF_PAGE_IN, HALF_PAGE_IN + 0.8)
     axes = figure.add_subplot()
     reach = float(np.ptp(plan, axis=0).max())
     tick = 0.07 * reach * np.stack([np.sin(heading), np.cos(heading)], axis=-1)
@@ -48,21 +49,30 @@ def survey_plan(survey: Survey, accepted: list[int], estimated: pd.DataFrame) ->
             linewidths=0.5,
             zorder=3,
         )
-    for number, place, label in zip(survey.number, plan, label_places(plan), strict=True):
+    labels = label_places(plan, np.concatenate([plan + tick, plan + tick / 2]))
+    for number, place, label in zip(survey.number, plan, labels, strict=True):
         axes.plot(*np.stack([place, label]).T, color=GREY, linewidth=0.4, zorder=1)
-        text = axes.annotate(f"{number}", label, ha="center", va="center", fontsize=6.5, zorder=4)
+        text = axes.annotate(f"{number}", label, ha="center", va="center", fontsize=7, zorder=4)
         text.set_path_effects([withStroke(linewidth=1.5, foreground="white")])
     crosses = axes.plot(*(points_m - centre)[:, [1, 0]].T, "+", color=GREEN, markersize=4, label="points")
     axes.set(xlabel="East of the pattern (m)", ylabel="North of the pattern (m)")
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.08)
+    _square(axes, np.concatenate([labels, plan, (points_m - centre)[:, [1, 0]]]))
     few_ticks(axes)
-    figure.colorbar(dots, ax=axes, label="Norm of roll and pitch (°)", shrink=0.85, pad=0.02)
+    figure.colorbar(
+        dots, ax=axes, label="Norm of roll and pitch (°)", location="bottom", shrink=0.8, aspect=30, pad=0.02
+    )
     shapes = [
         Line2D([], [], color=GREY, marker=marker, markeredgecolor=BLACK, linestyle="none", label=label)
         for marker, label in (("o", "accepted"), ("s", "rejected"))
     ]
-    figure.legend(handles=[*shapes, *crosses], loc="outside upper center", ncols=3)
+    heading_line = Line2D([], [], color=BLACK, linewidth=0.8, label="heading")
+    figure.legend(
+        handles=[*shapes, heading_line, *crosses],
+        loc="outside upper center",
+        ncols=4,
+        columnspacing=1.0,
+        handletextpad=0.4,
+    )
     return figure
 
 
@@ -72,15 +82,25 @@ def tilt_and_heading(survey: Survey) -> tuple[Floats, Floats]:
     return np.degrees(np.hypot(angles[:, 0], angles[:, 1])), angles[:, 2]
 
 
-def label_places(plan: Floats) -> Floats:
-    """A place (N, 2) for the label of each mark (N, 2): near its own mark, clear of all marks and of each other."""
+def _square(axes: Axes, shown: Floats) -> None:
+    """Equal limits both ways, in which everything shown (K, 2) has a margin."""
+    middle, half = (shown.max(axis=0) + shown.min(axis=0)) / 2, 0.54 * float(np.ptp(shown, axis=0).max())
+    axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
+    axes.set_aspect("equal")
+
+
+def label_places(plan: Floats, occupied: Floats) -> Floats:
+    """A place (N, 2) for the label of each mark (N, 2): near it, clear of all marks, labels and occupied places (K, 2).
+
+    Labels repel each other and are drawn back to their marks, in turns.
+    """
     reach = float(np.ptp(plan, axis=0).max()) or 1.0
     near, clear = _LABEL_DISTANCE * reach, _LABEL_CLEARANCE * reach
     outwards = plan - plan.mean(axis=0)
     outwards /= np.maximum(np.linalg.norm(outwards, axis=1, keepdims=True), 1e-9)
     places = plan + near * outwards
     for _ in range(_LABEL_TURNS):
-        others = np.concatenate([places, plan])
+        others = np.concatenate([places, plan, occupied])
         between = places[:, None] - others
         distance = np.linalg.norm(between, axis=-1)
         overlap = np.where(distance > 0, np.maximum(clear - distance, 0.0), 0.0)

@@ -1,5 +1,8 @@
 """The chain itself: where its walkers are at each step, and for how long they remember."""
 
+from collections.abc import Mapping
+from typing import Any, Final
+
 import emcee
 import numpy as np
 import pandas as pd
@@ -9,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from linepose.diagnostics import MINIMUM_STEPS_PER_TIME
-from linepose.figures.checks import usable_rows
+from linepose.figures.checks import stage_rows, usable_rows
 from linepose.figures.corner_plot import LABELS
 from linepose.figures.style import (
     BLACK,
@@ -18,6 +21,7 @@ from linepose.figures.style import (
     GREY,
     HALF_PAGE_IN,
     ORANGE,
+    POSE_MARKS,
     PURPLE,
     RED,
     SKY,
@@ -30,13 +34,17 @@ from linepose.stages import samples_from_table
 
 _COLOURS = (BLUE, RED, GREEN, SKY, ORANGE, PURPLE)
 _SHOWN_WALKERS = 5
+_LINES: Final[Any] = {
+    "optimum": {"color": BLACK, "linewidth": 0.8, "linestyle": "--"},
+    "truth": {"color": POSE_MARKS["truth"][0], "linewidth": 0.8},
+}
 
 
 @styled
-def trace(samples: pd.DataFrame, optimum: ArrayLike) -> Figure:
+def trace(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figure:
     """Each parameter over the kept steps: a few walkers, and the median and 68 % of all of them.
 
-    `samples` as in `result_schemas.SAMPLES`, optimum (6,).
+    `samples` as in `result_schemas.SAMPLES`; `marked` has poses (6,) by name: optimum, truth.
     """
     chain = _chain(samples)
     figure = blank_figure(HALF_PAGE_IN, 5.6)
@@ -48,7 +56,8 @@ def trace(samples: pd.DataFrame, optimum: ArrayLike) -> Figure:
         panel.plot(steps, chain[:, shown, i], color=GREY, linewidth=0.4)
         panel.fill_between(steps, low, high, color=SKY, alpha=0.5, linewidth=0)
         panel.plot(steps, middle, color=BLUE)
-        panel.axhline(float(np.asarray(optimum)[i]), color=BLACK, linewidth=0.7, linestyle="--")
+        for name, pose in marked.items():
+            panel.axhline(float(np.asarray(pose)[i]), **_LINES[name])
         panel.set_ylabel(label)
         panel.margins(x=0)
     panels[-1].set_xlabel("Step kept")
@@ -57,8 +66,8 @@ def trace(samples: pd.DataFrame, optimum: ArrayLike) -> Figure:
         Line2D([], [], color=BLUE, label="median"),
         Patch(color=SKY, alpha=0.5, label="68 % of the walkers"),
         Line2D([], [], color=GREY, linewidth=0.8, label="one walker"),
-        Line2D([], [], color=BLACK, linewidth=0.7, linestyle="--", label="optimum"),
     ]
+    handles += [Line2D([], [], label=name, **_LINES[name]) for name in marked]
     figure.legend(handles=handles, loc="outside upper center", ncols=2)
     return figure
 
@@ -73,7 +82,8 @@ def autocorrelation(samples: pd.DataFrame) -> Figure:
     figure = blank_figure(HALF_PAGE_IN, 2.8)
     axes = figure.add_subplot()
     for i, (label, colour) in enumerate(zip(LABELS, _COLOURS, strict=True)):
-        axes.plot(autocorrelation_function(chain[:, :, i]), color=colour, label=label.split(" (")[0], linewidth=0.9)
+        function = autocorrelation_function(chain[:, :, i])
+        axes.plot(function, color=colour, label=label.split(" (")[0], linewidth=1.0, linestyle="-" if i < 3 else "--")
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     axes.set(xlabel="Lag (steps)", ylabel="Autocorrelation (no unit)")
     axes.margins(x=0)
@@ -88,7 +98,8 @@ def autocorrelation_function(series: Floats) -> Floats:
 
 def trace_caption(diagnostics: pd.DataFrame) -> str:
     """Steps' worth of the chain: acceptance, effective samples, and R-hat."""
-    rows = diagnostics[diagnostics["stage"] == "inliers"]
+    columns = ["acceptance_fraction", "split_r_hat", "effective_sample_size"]
+    rows = stage_rows(diagnostics, "inliers", columns, "diagnostics.parquet")
     return (
         "The pose parameters over the kept steps of the chain. A chain that has settled shows a level band. "
         f"Acceptance {100 * rows['acceptance_fraction'].iloc[0]:.0f} %, worst split R-hat "
@@ -98,7 +109,9 @@ def trace_caption(diagnostics: pd.DataFrame) -> str:
 
 def autocorrelation_caption(diagnostics: pd.DataFrame, n_steps: int) -> str:
     """The autocorrelation time against the chain's length."""
-    time = diagnostics.loc[diagnostics["stage"] == "inliers", "autocorrelation_time"].max()
+    time = stage_rows(diagnostics, "inliers", ["autocorrelation_time"], "diagnostics.parquet")[
+        "autocorrelation_time"
+    ].max()
     return (
         f"How long a walker remembers: the longest autocorrelation time is estimated at {time:.0f} steps. The chain "
         f"has {n_steps} steps, {n_steps / time:.0f} times as many; {MINIMUM_STEPS_PER_TIME} times is the rule for a "

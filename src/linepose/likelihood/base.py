@@ -66,6 +66,14 @@ class Likelihood(ABC):
         """Sigma (P,) with which walkers are scattered around the optimum, given the pose's."""
         return np.repeat([translation_m, rotation_rad], 3)
 
+    def approach(self) -> "Likelihood":
+        """A cheaper model of the same parameters, from whose optimum a search may start; itself where there is none."""
+        return self
+
+    def parameter_priors(self) -> dict[str, tuple[float, float]]:
+        """Centre and sigma of the prior that the model itself brings, by parameter; none of the pose."""
+        return {}
+
     @abstractmethod
     def log_likelihoods(self, parameters: ArrayLike) -> Floats:
         """Log-likelihood of each row; (K, P) to (K,), on all cores that the process may use."""
@@ -77,6 +85,16 @@ class Likelihood(ABC):
     @abstractmethod
     def residuals(self, parameters: ArrayLike) -> Residuals:
         """Residuals and estimated points at one parameter vector (P,)."""
+
+    def chi_square(self, parameters: ArrayLike) -> tuple[float, int]:
+        """Sum of the residuals' squares in sigmas at the optimum (P,), and what right sigmas make of it about.
+
+        Here each point counts once, by its error's length over the sigma in that direction.
+        """
+        residuals = self.residuals(parameters)
+        normalised = residuals.error_px / residuals.sigma_px
+        freedom = int(np.isfinite(normalised).sum()) - N_PARAMETERS
+        return float(np.nansum(normalised**2)), max(freedom, 1)
 
     def mirrored(self) -> "Likelihood":
         """The same model with points behind the camera reprojected as if in front, as the paper's equations have it.

@@ -109,6 +109,10 @@ class RobustSharedLikelihood(SharedLikelihood):
         point[self._arrays.line_view, self._points[self._arrays.line_point]] = fit.line_weight
         return Weights(fit.view_weight, point)
 
+    def approach(self) -> SharedLikelihood:
+        """The same model without tails: its optimum is near, at a tenth of the cost."""
+        return SharedLikelihood(self.survey, self.camera, self.priors)
+
     def select(self, numbers: Sequence[int]) -> "RobustSharedLikelihood":
         """The same model of these observations only."""
         return RobustSharedLikelihood(self.survey.select(numbers), self.camera, self.priors)

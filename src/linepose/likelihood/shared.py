@@ -88,6 +88,11 @@ class SharedLikelihood(Likelihood):
         """Sigma of each parameter's prior (11,), infinite for the pose, which has none."""
         return np.concatenate([np.full(6, np.inf), self._prior_sigma])
 
+    def parameter_priors(self) -> dict[str, tuple[float, float]]:
+        """Centre and sigma of the priors of levels and intrinsics."""
+        centres, sigmas = self._prior_centre.tolist(), self._prior_sigma.tolist()
+        return dict(zip(SHARED_PARAMETERS[6:], zip(centres, sigmas, strict=True), strict=True))
+
     def start(self, pose: ArrayLike) -> Floats:
         """The pose (6,), with the prior's centre of everything else."""
         return np.concatenate([super().start(pose), self._prior_centre])
@@ -144,6 +149,14 @@ class SharedLikelihood(Likelihood):
         point_covariance = np.full((shape[1], 3, 3), np.nan)
         point_covariance[self._points] = self._point_covariance(fit)
         return Residuals(error, sigma, error_uv, points, point_covariance)
+
+    def chi_square(self, parameters: ArrayLike) -> tuple[float, int]:
+        """Chi squared under the whole covariances of the views, and its degrees of freedom: two a line, less the
+        coordinates of the points and the pose.
+        """
+        found = self._fit(self._vector(parameters)).marginal
+        freedom = 2 * len(self._arrays.u_px) - 3 * len(self._points) - len(POSE_COLUMNS)
+        return float(found.chi_squared), max(freedom, 1)
 
     def shared_errors(self, parameters: ArrayLike) -> Floats:
         """Navigation error (N, 6) that each view's points share: north, east, down (m), roll, pitch, yaw (rad).

@@ -2,32 +2,18 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import metadata
-from pathlib import Path, PurePath
-from platform import python_version
-from typing import Any, Final
+from pathlib import Path
+from typing import Final
 
 import pandas as pd
-import yaml
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from linepose.report.pictures import Picture, embedded
 from linepose.report.pose_tables import PoseNumber
+from linepose.report.sections import SectionOnPage
 from linepose.report.summary import PlatformSummary
 from linepose.report.verdict import Level
 
-PACKAGES: Final = (
-    "linepose",
-    "corner",
-    "emcee",
-    "matplotlib",
-    "numba",
-    "numpy",
-    "pandas",
-    "pyarrow",
-    "scipy",
-    "snakemake",
-)
 _WORDS: Final = {Level.GOOD: "good", Level.CARE: "care", Level.BAD: "bad"}
 _SIGNS: Final = {Level.GOOD: "✓ passed", Level.CARE: "! look", Level.BAD: "✗ failed"}
 
@@ -47,22 +33,12 @@ class FigureOnPage:
 
 @dataclass(frozen=True)
 class PlatformOnPage:
-    """One platform's section."""
+    """One platform: its summary, the sections that stand between pose and figures, its figures and its settings."""
 
     summary: PlatformSummary
-    figures: list[FigureOnPage]
+    sections: Sequence[SectionOnPage]
+    figures: Sequence[FigureOnPage]
     settings: str
-
-
-@dataclass(frozen=True)
-class TableOnPage:
-    """A table of results: title, a sentence, column heads, and rows of cells as text."""
-
-    anchor: str
-    title: str
-    sentence: str
-    heads: list[str]
-    rows: list[list[str]]
 
 
 def figures_on_page(name: str, folder: Path, index: pd.DataFrame) -> list[FigureOnPage]:
@@ -81,81 +57,9 @@ def figures_on_page(name: str, folder: Path, index: pd.DataFrame) -> list[Figure
     ]
 
 
-def regression_on_page(regression: pd.DataFrame) -> list[TableOnPage]:
-    """The published numbers beside the obtained ones, one table for each platform and table of the paper."""
-    parts = regression["quantity"].str.split(", ", n=2, expand=True).fillna("")
-    tables = []
-    for number, ((platform, source), rows) in enumerate(
-        regression.assign(platform=parts[0], source=parts[1], what=parts[2]).groupby(["platform", "source"], sort=False)
-    ):
-        cells = [
-            [
-                row["what"] or source,
-                f"{row['published']:.6g}",
-                f"{row['obtained']:.6g}",
-                f"{row['tolerance']:.2g}",
-                _outcome(row),
-            ]
-            for _, row in rows.iterrows()
-        ]
-        passed = int(rows["passed"].sum())
-        tables.append(
-            TableOnPage(
-                f"published-{number}",
-                f"{platform}: {source}",
-                f"{passed} of {len(rows)} reproduced within the tolerance.",
-                ["Quantity", "Published", "Obtained", "Tolerance", "Outcome"],
-                cells,
-            )
-        )
-    return tables
-
-
-def _outcome(row: "pd.Series[Any]") -> str:
-    if row["passed"]:
-        return "✓ passed"
-    return f"known deviation: {row['note']}" if row["known_deviation"] else "✗ differs"
-
-
-def table_on_page(name: str, table: pd.DataFrame) -> TableOnPage:
-    """A result table as it is, numbers to five digits."""
-    rows = [[_cell(value) for value in row] for row in table.itertuples(index=False)]
-    heads = [str(column).replace("_", " ") for column in table.columns]
-    return TableOnPage(f"table-{name}", name.replace("_", " ").capitalize(), "", heads, rows)
-
-
-def _cell(value: Any) -> str:
-    if isinstance(value, float):
-        return "" if pd.isna(value) else f"{value:.5g}"
-    return str(value)
-
-
-def versions() -> dict[str, str]:
-    """Versions of Python and of the packages that results depend on."""
-    return {"python": python_version()} | {name: metadata.version(name) for name in PACKAGES}
-
-
-def settings_text(values: Mapping[str, Any]) -> str:
-    """Settings as YAML; of an absolute path only its last part, because a report travels."""
-    return yaml.safe_dump(
-        _without_folders(dict(values)), sort_keys=False, allow_unicode=True, width=80, default_flow_style=None
-    ).strip()
-
-
-def _without_folders(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {key: _without_folders(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_without_folders(item) for item in value]
-    if isinstance(value, PurePath) or (isinstance(value, str) and PurePath(value).is_absolute()):
-        return f".../{PurePath(value).name}"
-    return value
-
-
 def render_page(
     platforms: Sequence[PlatformOnPage],
-    published: Sequence[TableOnPage],
-    tables: Sequence[TableOnPage],
+    published: Sequence[SectionOnPage],
     settings: str,
     package_versions: Mapping[str, str],
 ) -> str:
@@ -167,18 +71,27 @@ def render_page(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"word": _WORDS.__getitem__, "sign": _SIGNS.__getitem__, "number": _number}
+    environment.filters |= {
+        "word": _WORDS.__getitem__,
+        "sign": _SIGNS.__getitem__,
+        "number": _number,
+        "brief": _brief,
+        "capital": lambda text: text[:1].upper() + text[1:],
+    }
     return environment.get_template("report.html.j2").render(
-        platforms=platforms,
-        published=published,
-        tables=tables,
-        settings=settings,
-        versions=package_versions,
-        good=Level.GOOD,
+        platforms=platforms, published=published, settings=settings, versions=package_versions
     )
 
 
 def _number(value: float, of: PoseNumber) -> str:
     """A number to the digits that its unit deserves: tenths of millimetres, hundredths of degrees."""
-    digits = 2 if of.unit == "°" else 4
+    return _rounded(value, 2 if of.unit == "°" else 4)
+
+
+def _brief(value: float, of: PoseNumber) -> str:
+    """A number to the digits that a glance needs: millimetres, tenths of degrees."""
+    return _rounded(value, 1 if of.unit == "°" else 3)
+
+
+def _rounded(value: float, digits: int) -> str:
     return f"{round(value, digits) + 0.0:.{digits}f}"  # never -0.00

@@ -12,7 +12,10 @@ from linepose.errors import InputError
 
 _COLOURS: Final = 128
 _COMPRESSION: Final = 6  # zlib level: 9 takes six times as long for a tenth less
-_README_PICTURES: Final = ("outliers", "corner", "mapping")
+_README_PICTURES: Final = {
+    "ladybird": ("outliers", "corner", "mapping"),
+    "ladybird-sim": ("stacked_scan", "detected_points"),
+}
 
 
 @dataclass(frozen=True)
@@ -37,18 +40,19 @@ def reduced(path: Path) -> Image.Image:
     """A PNG file's image with a palette of its own."""
     try:
         with Image.open(path) as image:
-            return image.convert("RGB").quantize(_COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+            return image.convert("RGB").quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     except (OSError, UnidentifiedImageError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "a PNG file", "delete the figures' folder and run again") from None
 
 
-def write_readme_pictures(figures: Path, folder: Path) -> None:
-    """Write the README's pictures, small, from a platform's figures."""
+def write_readme_pictures(results: Path, folder: Path) -> None:
+    """Write the README's pictures, small, from the figures of several platforms."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name in _README_PICTURES:
-        reduced(figures / f"{name}.png").save(folder / f"{name}.png", optimize=True)
+    for platform, names in _README_PICTURES.items():
+        for name in names:
+            reduced(results / platform / "figures" / f"{name}.png").save(folder / f"{name}.png", optimize=True)
 
 
 if __name__ == "__main__":
-    write_readme_pictures(Path("results/ladybird/figures"), Path("docs/images"))
+    write_readme_pictures(Path("results"), Path("docs/images"))

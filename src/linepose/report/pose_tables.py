@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from linepose.pose import euler_covariance, euler_pose
 from linepose.rotations import Floats, matrix_from_rotation_vector
 
-_POSITION = ("forward, r_x", "right, r_y", "down, r_z")
+_POSITION = ("r_x forward", "r_y right", "r_z down")
 _GIMBAL_DEG = 89.0
 
 

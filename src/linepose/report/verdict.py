@@ -5,9 +5,11 @@ Only decisions stand here; the numbers they rest on come in as `Evidence`.
 
 from dataclasses import dataclass
 from enum import IntEnum
+from math import isnan
 from typing import Final
 
 from linepose.diagnostics import MAXIMUM_R_HAT, MINIMUM_STEPS_PER_TIME
+from linepose.likelihood.names import PUBLISHED, sampling_section
 
 CONSISTENT: Final = (0.5, 1.5)  # reduced chi-square of errors that are about as large as their sigmas
 ALIKE_IN_A_VIEW: Final = (
@@ -56,16 +58,21 @@ class Evidence:
     influence: float | None = None
     truth_sigmas: float | None = None
     truth_parameter: str = ""
+    noise_model: str = PUBLISHED
 
 
 @dataclass(frozen=True)
 class Check:
-    """One reason: its name, how it ended, what was found, and what to do, empty where there is nothing to do."""
+    """One reason: its name, how it ended, what was found, what to do, and the finding in a few words.
+
+    `advice` and `brief` are empty where there is nothing to do.
+    """
 
     name: str
     level: Level
     found: str
     advice: str = ""
+    brief: str = ""
 
 
 @dataclass(frozen=True)
@@ -76,28 +83,33 @@ class Verdict:
     sentence: str
     checks: tuple[Check, ...]
 
+    @property
+    def reasons(self) -> tuple[Check, ...]:
+        """The checks that ask for something, the worst first."""
+        return tuple(sorted((check for check in self.checks if check.level), key=lambda check: -check.level))
+
 
 def judge(evidence: Evidence) -> Verdict:
-    """The verdict on one platform."""
-    checks = [
-        converged(evidence),
-        chain_length(evidence),
-        residual_size(evidence),
-        independence(evidence),
-        angular_diversity(evidence),
-        worst_observation(evidence),
-        hand_measurement(evidence),
-    ]
+    """The verdict on one platform, what matters most to who will use the pose first."""
+    checks = [converged(evidence)]
     if evidence.sigma_factor is not None:
         checks.append(repeatability(evidence.sigma_factor))
+    checks += [
+        worst_observation(evidence),
+        angular_diversity(evidence),
+        residual_size(evidence),
+        independence(evidence),
+        hand_measurement(evidence),
+        chain_length(evidence),
+    ]
     if evidence.truth_sigmas is not None:
         checks.append(truth(evidence, evidence.truth_sigmas))
     level = max(check.level for check in checks)
-    asking = [check.name.lower() for check in checks if check.level == level]
+    count = f"{sum(check.level == level for check in checks)} of {len(checks)} checks"
     sentence = {
         Level.GOOD: "Use this pose: every check passed.",
-        Level.CARE: f"Use this pose with care: look at {', '.join(asking)}.",
-        Level.BAD: f"Do not use this pose yet: {', '.join(asking)} failed.",
+        Level.CARE: f"Use this pose with care: look at {count}.",
+        Level.BAD: f"Do not use this pose yet: {count} failed.",
     }[level]
     return Verdict(level, sentence, tuple(checks))
 
@@ -111,6 +123,7 @@ def converged(evidence: Evidence) -> Check:
         Level.BAD,
         "The search stopped before it reached a minimum.",
         "Measure the start pose by hand again, or check the conventions of the navigation's angles.",
+        "the search stopped before it reached a minimum",
     )
 
 
@@ -129,7 +142,8 @@ def chain_length(evidence: Evidence) -> Check:
         Level.CARE,
         f"Chain too short: {found} The rule is {MINIMUM_STEPS_PER_TIME} autocorrelation times and an R-hat below "
         f"{MAXIMUM_R_HAT}. The pose is not affected, its sampled sigmas are rough.",
-        f"Set sampling.n_steps to {steps} or more and run again.",
+        f"Set {sampling_section(evidence.noise_model)}.n_steps to {steps} or more and run again.",
+        f"the chain has {evidence.n_steps} steps where {steps} are needed",
     )
 
 
@@ -143,6 +157,7 @@ def residual_size(evidence: Evidence) -> Check:
             Level.BAD if evidence.reduced_chi_square > high**2 else Level.CARE,
             f"{found} The errors are larger than the stated sigmas explain.",
             "Check the navigation's covariances and the camera's sigmas, or lower outliers.threshold_px.",
+            f"errors are larger than their sigmas (reduced chi-square {evidence.reduced_chi_square:.2f})",
         )
     if evidence.reduced_chi_square < low:
         return Check(
@@ -151,16 +166,22 @@ def residual_size(evidence: Evidence) -> Check:
             f"{found} The errors are smaller than the stated sigmas: either the navigation's sigmas are too large, or "
             "its errors are common to many points and do not show as scatter.",
             "Check which columns hold the navigation's covariances, and in which units.",
+            f"errors are smaller than their sigmas (reduced chi-square {evidence.reduced_chi_square:.2f})",
         )
     return Check("Size of the residuals", Level.GOOD, found)
 
 
 def independence(evidence: Evidence) -> Check:
-    """Whether the points of a view err independently, as the published likelihood takes them to."""
+    """Whether the points of a view err independently, where the noise model takes them to."""
+    if isnan(evidence.alike_in_a_view):
+        return Check("Independence within a view", Level.GOOD, "Not known: it takes two observations of two points.")
     share = 100 * max(evidence.alike_in_a_view, 0.0)
     found = f"{share:.0f} % of the residuals' variance is common to all points of a view."
     if evidence.alike_in_a_view <= ALIKE_IN_A_VIEW:
         return Check("Independence within a view", Level.GOOD, found)
+    if evidence.noise_model != PUBLISHED:
+        told = f"{found} The {evidence.noise_model} noise model infers how much, and its sigmas allow for it."
+        return Check("Independence within a view", Level.GOOD, told)
     if evidence.sigma_factor is not None and evidence.sigma_factor <= SIGMA_FACTOR:
         return Check(
             "Independence within a view",
@@ -172,7 +193,9 @@ def independence(evidence: Evidence) -> Check:
         "Independence within a view",
         Level.CARE,
         f"{found} The published noise model takes points as independent, so its sigmas come out too small.",
-        "Read the sigmas as lower bounds; more observations help, more points in a view do not.",
+        "Set noise_model: shared in the platform's file, which allows for it; more observations help, more points in a "
+        "view do not.",
+        f"{share:.0f} % of the errors' variance is common to a whole view",
     )
 
 
@@ -185,6 +208,7 @@ def angular_diversity(evidence: Evidence) -> Check:
             Level.CARE,
             f"{found} The data say no more than the hand measurement about {', '.join(evidence.undecided)}.",
             "Add observations with the vehicle rolled or pitched by 4° or more, and from other sides.",
+            f"the data do not decide {', '.join(evidence.undecided)}",
         )
     if evidence.tilt_spread_deg >= TILT_SPREAD_DEG:
         return Check("Angular diversity", Level.GOOD, found)
@@ -193,6 +217,7 @@ def angular_diversity(evidence: Evidence) -> Check:
         Level.CARE,
         f"{found} Below {TILT_SPREAD_DEG:g}° height and sideways position are hard to tell from the angles.",
         "Add observations with the vehicle rolled or pitched by 4° or more.",
+        f"roll and pitch spread by {evidence.tilt_spread_deg:.1f}° only",
     )
 
 
@@ -208,14 +233,19 @@ def worst_observation(evidence: Evidence) -> Check:
             f" Observation {evidence.most_influential} has the most influence: without it the pose moves by "
             f"{evidence.influence:.1f} sigmas."
         )
-    advice = []
+    advice, brief = [], []
     if evidence.worst_error_px > NEAR_THRESHOLD * evidence.threshold_px:
         advice.append(
             f"Check the labels and the navigation of observation {evidence.worst_observation}, or run without it."
         )
+        brief.append(
+            f"observation {evidence.worst_observation} is at {evidence.worst_error_px:.1f} of "
+            f"{evidence.threshold_px:g} px"
+        )
     if evidence.influence is not None and evidence.influence > 1.0:
         advice.append(f"Repeat the view of observation {evidence.most_influential}, so that it does not stand alone.")
-    return Check("Worst observation", Level.CARE if advice else Level.GOOD, found, " ".join(advice))
+        brief.append(f"observation {evidence.most_influential} alone moves the pose by {evidence.influence:.1f} sigmas")
+    return Check("Worst observation", Level.CARE if advice else Level.GOOD, found, " ".join(advice), ", ".join(brief))
 
 
 def hand_measurement(evidence: Evidence) -> Check:
@@ -231,6 +261,7 @@ def hand_measurement(evidence: Evidence) -> Check:
         Level.CARE,
         found,
         "Measure again; if the tape is right, check the conventions of axes and angles.",
+        f"{evidence.hand_parameter} is {evidence.hand_sigmas:.1f} sigmas from the hand measurement",
     )
 
 
@@ -244,6 +275,7 @@ def repeatability(factor: float) -> Check:
         Level.CARE,
         f"Halves of the observations differ {factor:.1f} times as much as the sigmas promise.",
         f"Multiply the sigmas by {factor:.1f} before you rely on them.",
+        f"halves of the observations differ {factor:.1f} times as much as the sigmas promise",
     )
 
 
@@ -257,4 +289,5 @@ def truth(evidence: Evidence, sigmas: float) -> Check:
         Level.CARE,
         f"{found} The sigmas are too small for the errors that were simulated.",
         "Compare the noise models; see repeatability for a factor.",
+        f"{evidence.truth_parameter} is {sigmas:.1f} sigmas from the truth",
     )

@@ -17,20 +17,23 @@ from linepose.simulate.trajectory import body_poses, schedule
 
 _N_BRACKETS: Final = 64  # a point crosses the line once in a pass; this finds the crossing on uneven ground
 _DISTORTION_STEPS: Final = 20
+_STEP_S: Final = 1e-4  # for the rate at a crossing
 
 
 @dataclass(frozen=True)
 class Truth:
     """What a simulated survey conceals; N observations of M points.
 
-    pose (6,) of the camera, point_m (M, 3), time_s and u_px (N, M) of each crossing, NaN where a point does not cross
-    the line within the image, position_m and euler_rad (N, M, 3) of the body then, from the survey origin.
+    pose (6,) of the camera, point_m (M, 3), time_s and u_px (N, M) of each crossing and how fast the point moves across
+    the line then, v_px_s (N, M), NaN where a point does not cross the line within the image, position_m and euler_rad
+    (N, M, 3) of the body then, from the survey origin.
     """
 
     pose: Floats
     point_m: Floats
     time_s: Floats
     u_px: Floats
+    v_px_s: Floats
     position_m: Floats
     euler_rad: Floats
 
@@ -55,11 +58,13 @@ def exact_projections(camera: Camera, settings: SimulationSettings) -> Truth:
     at_root = _in_camera(settings, root, points[column])
     u = pixel_of_direction(camera, at_root[..., 0] / at_root[..., 2])
     inside = (u >= -0.5) & (u <= camera.n_pixels - 0.5)
-    time_s, u_px = np.full((2, len(times.start_s), len(points)), np.nan)
-    time_s[row[inside], column[inside]] = root[inside]
-    u_px[row[inside], column[inside]] = u[inside]
+    around = _in_camera(settings, root[:, None] + [-_STEP_S, _STEP_S], points[column][:, None])
+    rate = camera.focal_length_px * np.diff(around[..., 1] / around[..., 2])[:, 0] / (2 * _STEP_S)
+    time_s, u_px, v_px_s = np.full((3, len(times.start_s), len(points)), np.nan)
+    for grid, values in ((time_s, root), (u_px, u), (v_px_s, rate)):
+        grid[row[inside], column[inside]] = values[inside]
     position, euler = body_poses(settings, np.where(np.isfinite(time_s), time_s, times.middle_s[:, None]))
-    return Truth(pose, points, time_s, u_px, position, euler)
+    return Truth(pose, points, time_s, u_px, v_px_s, position, euler)
 
 
 def pixel_of_direction(camera: Camera, x: ArrayLike) -> Floats:

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from linepose import rotations
 from linepose.camera import Camera
 from linepose.observations import EULER_COLUMNS, POSITION_COLUMNS
 from linepose.pose import POSE_COLUMNS
@@ -102,14 +103,16 @@ def true_lines(camera: Camera, settings: SimulationSettings) -> Floats:
 def truth_table(camera: Camera, settings: SimulationSettings) -> pd.DataFrame:
     """The truth, one row a point of an observation; its map positions are like the log's.
 
-    u_px, line, time_s (from the survey's start) and the body's pose then, the point's position, the camera's pose,
-    whether the point is visible, and whether the observation is spoilt by a planted fault.
+    u_px, line, how far the point moves across the scan line from one line to the next (v_px_per_line), time_s (from the
+    survey's start) and the body's pose then, the point's position and its distance from the camera (range_m), the
+    camera's pose, whether the point is visible, and whether the observation is spoilt by a planted fault.
     """
     truth = exact_projections(camera, settings)
     shape = truth.u_px.shape
     row, point = np.indices(shape).reshape(2, -1)
     origin = np.asarray(settings.origin_m)
     body = truth.position_m.reshape(-1, 3) + origin
+    camera_m = truth.position_m + rotations.matrix_from_euler(truth.euler_rad) @ truth.pose[:3]
     columns: dict[str, NDArray[np.int64] | NDArray[np.bool_] | Floats] = {
         "observation": row + 1,
         "point": point,
@@ -117,6 +120,8 @@ def truth_table(camera: Camera, settings: SimulationSettings) -> pd.DataFrame:
         "faulty": np.isin(row + 1, faulty_observations(settings)),
         "u_px": truth.u_px.ravel(),
         "line": true_lines(camera, settings).ravel(),
+        "v_px_per_line": truth.v_px_s.ravel() / settings.image.line_rate_hz,
+        "range_m": np.linalg.norm(truth.point_m - camera_m, axis=-1).ravel(),
         "time_s": truth.time_s.ravel(),
     }
     columns |= {name: body[:, axis] for axis, name in enumerate(POSITION_COLUMNS)}

@@ -1,7 +1,9 @@
 """Scan images by ray casting: the light that every pixel of every line collects from the board and the ground.
 
 A pixel sees a square field of view, which the slit and the optics make wider than the pixels' spacing, while the body
-moves on during the exposure. All of it is sampled on a regular grid of directions, at a few moments, and averaged.
+moves on during the exposure. All of it is sampled on a grid of directions, at a few moments, and averaged. The grid
+is turned, so that an edge of the print along the scan line or across it meets the samples one by one: on a straight
+grid it would meet whole rows, and a slow pass would show an edge as a flight of stairs.
 """
 
 from dataclasses import dataclass
@@ -17,7 +19,7 @@ from linepose.rotations import Floats
 from linepose.simulate import scene
 from linepose.simulate.faults import missing
 from linepose.simulate.projection import exact_projections
-from linepose.simulate.settings import ImageSettings, SimulationSettings
+from linepose.simulate.settings import SimulationSettings
 from linepose.simulate.trajectory import body_poses, schedule
 
 _MOMENTS: Final = 2  # in an exposure, during which the body moves by a fraction of what a pixel sees
@@ -59,11 +61,12 @@ def render(camera: Camera, settings: SimulationSettings, observation: int) -> Ex
     middles = line_times_s(camera, settings, observation)
     moments = _cell_centres(_MOMENTS) * image.exposure_share / image.line_rate_hz
     centres, matrices = _camera_in_board(settings, middles[:, None] + moments)
+    sampled_u, sampled_v = _turned_grid(image.supersampling) * image.ifov_rad
     light = _collected_light(
         centres,
         matrices,
-        _sampled_x(camera, image),
-        _cell_centres(image.supersampling) * image.ifov_rad,
+        _sampled_x(camera, sampled_u),
+        sampled_v,
         missing(settings)[observation - 1],
         np.array([image.dark_reflectance, image.bright_reflectance]),
         np.array([image.ground_reflectance, image.ground_contrast, image.ground_grain_m]),
@@ -79,10 +82,16 @@ def _cell_centres(n: int) -> Floats:
     return (np.arange(n) + 0.5) / n - 0.5
 
 
-def _sampled_x(camera: Camera, image: ImageSettings) -> Floats:
-    """Normalised x of each pixel's samples along the line; (S, n)."""
+def _turned_grid(n: int) -> Floats:
+    """Samples of the unit square around 0, one in each of n x n cells, each alone in its row and column; (2, n^2)."""
+    i, j = np.indices((n, n)).reshape(2, -1)
+    return np.stack([i + (j + 0.5) / n, j + (n - i - 0.5) / n]) / n - 0.5
+
+
+def _sampled_x(camera: Camera, sampled_u: Floats) -> Floats:
+    """Normalised x of each pixel's samples, which are off its centre by (n,); (S, n)."""
     x = (np.arange(camera.n_pixels) - camera.principal_point_px) / camera.focal_length_px
-    return undistort(x[:, None] + _cell_centres(image.supersampling) * image.ifov_rad, camera.k1, camera.k2)
+    return undistort(x[:, None] + sampled_u, camera.k1, camera.k2)
 
 
 def _camera_in_board(settings: SimulationSettings, time_s: Floats) -> tuple[Floats, Floats]:
@@ -108,23 +117,22 @@ def _collected_light(
     gradient: Floats,
     seed: int,
 ) -> NDArray[np.float32]:
-    """Mean light of each pixel; centres (L, T, 3), matrices (L, T, 3, 3), x (S, U), v (V,) to (L, S)."""
+    """Mean light of each pixel; centres (L, T, 3), matrices (L, T, 3, 3), samples x (S, n) and v (n,) to (L, S)."""
     n_lines, n_moments = centres.shape[:2]
-    n_pixels, n_across = sampled_x.shape
+    n_pixels, n_samples = sampled_x.shape
     light = np.empty((n_lines, n_pixels), dtype=np.float32)
     for line in numba.prange(n_lines):
         for pixel in range(n_pixels):
             total = 0.0
             for moment in range(n_moments):
                 c, m = centres[line, moment], matrices[line, moment]
-                for v in sampled_v:
-                    for k in range(n_across):
-                        x = sampled_x[pixel, k]
-                        dx = m[0, 0] * x + m[0, 1] * v + m[0, 2]
-                        dy = m[1, 0] * x + m[1, 1] * v + m[1, 2]
-                        dz = m[2, 0] * x + m[2, 1] * v + m[2, 2]
-                        total += _seen(c, dx, dy, dz, missing_points, sheet, ground, backdrop_m, gradient, seed)
-            light[line, pixel] = total / (n_moments * len(sampled_v) * n_across)
+                for k in range(n_samples):
+                    x, v = sampled_x[pixel, k], sampled_v[k]
+                    dx = m[0, 0] * x + m[0, 1] * v + m[0, 2]
+                    dy = m[1, 0] * x + m[1, 1] * v + m[1, 2]
+                    dz = m[2, 0] * x + m[2, 1] * v + m[2, 2]
+                    total += _seen(c, dx, dy, dz, missing_points, sheet, ground, backdrop_m, gradient, seed)
+            light[line, pixel] = total / (n_moments * n_samples)
     return light
 
 

@@ -134,7 +134,7 @@ class ImageSettings:
     `ifov_rad` is the field of view of one pixel, both ways; it may exceed the pixels' spacing. Reflectances are
     between 0 and 1, the full scale is what reflectance 1 gives in light of strength 1. The lighting gradient is the
     relative change of the light per metre along the board's x and y. Exposure is a share of the line's period, margin
-    one of the time from first to last point, rendered on both sides of them.
+    one of the time from first to last point, rendered on both sides of them. Supersampling n takes n x n rays a pixel.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _CLOSED
@@ -142,7 +142,7 @@ class ImageSettings:
     line_rate_hz: float = 133.0
     n_bands: int = 4
     n_bits: int = 12
-    supersampling: int = 4
+    supersampling: int = 6
     exposure_share: float = 0.8
     margin_share: float = 0.6
     full_scale_electrons: float = 20000.0

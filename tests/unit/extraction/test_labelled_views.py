@@ -145,9 +145,15 @@ def test_views_out_of_order_are_named_by_the_row_of_their_earliest_time(view):
     )
 
 
-def test_no_view_at_all():
-    assert message_of() == (
-        "source.views: found no file, expected one file a view; correct the pattern, first and step"
+@pytest.mark.parametrize(("pattern", "first", "n_files"), [("*.txt", 1, 0), ("*.csv", 3, 2)])
+def test_no_view_at_all(tmp_path, pattern, first, n_files):
+    for name in ("a.csv", "b.csv"):
+        (tmp_path / name).touch()
+    with pytest.raises(InputError) as caught:
+        select_views(tmp_path, pattern, first, 1)
+    assert str(caught.value) == (
+        f"{tmp_path / pattern}: found {n_files} files, expected one file a view; "
+        "correct source.views and source.first, or put the files there"
     )
 
 
@@ -157,7 +163,6 @@ def test_selection_counts_from_one_in_the_order_of_names(tmp_path):
     chosen = [path.name for path in select_views(tmp_path, "*.csv", 2, 2)]
     assert chosen == ["02.csv", "04.csv"]
     assert [path.name for path in select_views(tmp_path, "*.csv", 1, 1)] == [f"0{n}.csv" for n in range(1, 6)]
-    assert select_views(tmp_path, "*.png", 1, 1) == []
 
 
 @pytest.mark.field

@@ -101,7 +101,7 @@ def test_label_that_cannot_be_right(folder, pictures, row, change, told):
 
 def test_fewer_than_two_labelled_observations(folder, pictures):
     labels = labels_of(pictures).query("observation == 1")
-    with pytest.raises(InputError, match="1 of 3 scans with known points, expected at least 2"):
+    with pytest.raises(InputError, match=f"{folder}: found 1 of 3 scans with known points, expected at least 2"):
         refined_points(select_scans(folder, "*.png", []), labels, CENTROID, SHAPE[1])
 
 

@@ -1,3 +1,7 @@
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -53,6 +57,30 @@ def test_many_chunks_give_the_same_mean(tmp_path, cube, interleave, monkeypatch)
     path = write_envi(tmp_path, cube, interleave)
     monkeypatch.setattr(scans, "_CHUNK_BYTES", 3 * cube[0].size * 2)
     np.testing.assert_allclose(spectral_mean(path), cube.mean(axis=2), rtol=1e-6)
+
+
+_GROWTH = """
+import sys
+from pathlib import Path
+from linepose.extraction.scans import spectral_mean
+def peak_mb():
+    return int(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]) / 1024
+before = peak_mb()
+spectral_mean(Path(sys.argv[1]))
+print(peak_mb() - before)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="peak memory as Linux tells it")
+def test_memory_holds_a_chunk_and_never_the_file(tmp_path):
+    n_lines, n_pixels, n_bands = 650, 648, 244
+    path = write_envi(tmp_path, np.zeros((1, n_pixels, n_bands)), lines=n_lines)
+    with (tmp_path / "scan.img").open("wb") as data:
+        data.truncate(2 * n_lines * n_pixels * n_bands)  # 206 MB that take no place on the disk
+    command = [sys.executable, "-c", _GROWTH, str(path)]
+    grown_mb = float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    # a chunk of 64 MB, its sums of four bytes a pixel, and what reading the header takes
+    assert grown_mb < 100
 
 
 def test_sum_of_the_brightest_bands_does_not_overflow(tmp_path):
@@ -123,7 +151,7 @@ def test_absurd_size_is_refused_before_memory_is_taken(tmp_path, cube, monkeypat
 def test_missing_data_file(tmp_path, cube):
     path = write_envi(tmp_path, cube)
     (tmp_path / "scan.img").unlink()
-    with pytest.raises(InputError, match=r"scan\.hdr"):
+    with pytest.raises(InputError, match=r"scan\.hdr: found no data file, expected scan\.bil, \.img, .* beside it"):
         read_scan(path)
 
 
@@ -148,6 +176,7 @@ def test_intensity_that_is_no_number(tmp_path, cube):
         (START_US + np.r_[0:10, 9:22], r"row 12: found time .*, expected a time after the line before it"),
         (START_US + np.r_[0:10, 5:18], "row 12: found time"),
         (np.arange(23) + 1_466_000_000, "they look like seconds"),
+        (np.arange(23) + 1_466_000_000, "row 2, column 1: found time 1466000000,"),
         (["soon"] * 23, "row 2: found 'soon', expected a whole number"),
     ],
 )
@@ -155,6 +184,13 @@ def test_times_that_cannot_be_right(tmp_path, cube, times, told):
     path = write_envi(tmp_path, cube)
     write_times(tmp_path, times)
     with pytest.raises(InputError, match=told):
+        read_scan(path)
+
+
+def test_times_that_are_no_text(tmp_path, cube):
+    path = write_envi(tmp_path, cube)
+    (tmp_path / "scan-times.csv").write_bytes(bytes(range(256)))
+    with pytest.raises(InputError, match=r"scan-times\.csv: found bytes that are not text"):
         read_scan(path)
 
 

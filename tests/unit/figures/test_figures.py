@@ -1,6 +1,7 @@
 """Each figure drawn from made-up results: axes with units, the artists that must be there, marks where they belong."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.collections import LineCollection, PathCollection, QuadMesh
 from matplotlib.colors import to_hex
@@ -9,13 +10,13 @@ from matplotlib.patches import Ellipse, Rectangle
 from linepose.errors import LineposeError
 from linepose.experiments.basin import Region
 from linepose.figures.basin import basin, basin_caption
-from linepose.figures.corner_plot import corner_plot, corner_plot_caption
+from linepose.figures.corner_plot import corner_plot, corner_plot_caption, two_ticks
 from linepose.figures.mapping import angle_error, mapping, mapping_caption
 from linepose.figures.outlier_matrix import outlier_matrix, outlier_matrix_caption
 from linepose.figures.platform_sketch import platform_sketch
 from linepose.figures.repeatability import repeatability, repeatability_caption
 from linepose.figures.residuals import residuals, residuals_caption
-from linepose.figures.rotation_axis import axis_and_angle, rotation_axis
+from linepose.figures.rotation_axis import axis_and_angle, rotation_axis, tangent_plane
 from linepose.figures.style import GREEN, RED
 from linepose.figures.survey_plan import label_places, survey_plan, survey_plan_caption
 from linepose.figures.trace import autocorrelation, autocorrelation_function, trace
@@ -47,6 +48,7 @@ def test_outlier_matrix_frames_the_accepted_row_and_leaves_removed_cells_white()
     crosses = axes.lines[0]
     assert list(zip(crosses.get_xdata(), crosses.get_ydata(), strict=True)) == [(5, 0), (4, 1), (3, 2)]
     assert {"Observation", "Observations used", "Mean reprojection error (px)"} <= labels(figure)
+    assert legend(figure) == ["removed next", "accepted"]
     assert "6, 5" in outlier_matrix_caption(made_up.outliers(), 5.0)
 
 
@@ -109,9 +111,11 @@ def test_survey_plan_numbers_every_observation():
 
 def test_labels_keep_clear_of_each_other():
     plan = np.array([[0.0, 3.0], [0.02, 3.0], [0.0, 3.05], [3.0, 0.0], [-3.0, 0.0], [0.0, -3.0]])
-    places = label_places(plan)
+    headings = plan + np.array([0.0, 0.4])
+    places = label_places(plan, headings)
     apart = np.linalg.norm(places[:, None] - places, axis=-1)[np.triu_indices(6, 1)]
     assert apart.min() > 0.2  # 3 % of the 6 m that the survey spans
+    assert np.linalg.norm(places[:, None] - headings, axis=-1).min() > 0.2
 
 
 def test_uncertainty_draws_both_methods_of_six_parameters():
@@ -138,9 +142,15 @@ def test_basin_colours_each_cell_and_draws_the_region():
 
 def test_rotation_axis_has_sphere_close_up_and_histogram():
     figure = rotation_axis(made_up.samples(), MARKED)
-    sphere, close, histogram = figure.axes
+    sphere, close, colours, histogram = figure.axes
     assert sphere.name == "3d"
-    assert "(°)" in close.get_xlabel()
+    assert {"To the right (°)", "Upwards (°)"} <= labels(figure)
+    assert colours.get_ylabel() == "Density (1/°²)"
+    hand = next(line for line in close.lines if line.get_color() == RED).get_xydata()[0]
+    axes = [axis_and_angle(pose[3:])[0] for pose in (MARKED["hand measured"], made_up.OPTIMUM)]
+    between = np.degrees(np.arccos(axes[0] @ axes[1]))
+    # the mean of 320 samples with 0.02 rad lies within 0.1 deg of the optimum; a sine is less than its angle by 1e-3
+    assert np.linalg.norm(hand) == pytest.approx(between, abs=0.3)
     assert "(°)" in histogram.get_xlabel()
     lines = [line.get_xdata()[0] for line in histogram.lines]
     np.testing.assert_allclose(lines, [np.degrees(np.linalg.norm(pose[3:])) for pose in MARKED.values()])
@@ -149,22 +159,61 @@ def test_rotation_axis_has_sphere_close_up_and_histogram():
     assert angle == pytest.approx(90.0)
 
 
+@pytest.mark.parametrize("pole", [[0.6, 0.0, -0.8], [0.0, 1.0, 0.0], [0.0, 0.1, np.sqrt(0.99)]])
+def test_the_close_up_is_seen_from_outside(pole):
+    (rightwards, upwards), (_, label) = tangent_plane(np.array(pole))
+    np.testing.assert_allclose(np.cross(rightwards, upwards), pole, atol=1e-12)  # right-handed towards the viewer
+    wanted = {"Upwards (°)": [0.0, 0.0, -1.0], "Forwards (°)": [1.0, 0.0, 0.0]}[label]
+    assert upwards @ wanted > 0
+
+
+def test_truth_is_circled_where_it_is_known():
+    truth = made_up.ORIGIN + made_up.POINTS
+    tables = made_up.mapping(), made_up.estimated_points(), made_up.observations()
+    for figure, panels in ((mapping(*tables, 2, truth), 2), (angle_error(*tables, 1.0, truth), 1)):
+        for axes in figure.axes[:panels]:
+            circles = next(line for line in axes.lines if line.get_label() == "true points")
+            np.testing.assert_allclose(
+                np.sort(circles.get_xydata(), axis=0), np.sort(made_up.POINTS[:, [1, 0]], axis=0), atol=1e-9
+            )
+        assert "true points" in legend(figure)
+
+
+def test_corner_ticks_are_few_and_keep_off_the_ends():
+    assert two_ticks(-0.35, 0.05) == pytest.approx([-0.2, -0.1])
+    assert len(two_ticks(0.0, 0.01)) == 2
+    assert two_ticks(1.0, 1.0 + 1e-12) != []
+
+
 def test_platform_sketch_shows_outline_and_optical_axes_in_both_views():
     outline = made_up.platform().outline
     figure = platform_sketch(made_up.samples(), outline, MARKED)
-    side, front = figure.axes
+    side, front, side_close, front_close = figure.axes
     assert (side.get_xlabel(), front.get_xlabel(), side.get_ylabel()) == ("Forward (m)", "Right (m)", "Up (m)")
-    assert len(side.patches) == 1
+    circle, frame = side.patches
+    assert circle.center == (0.5, -0.7)
+    # the frame is where the close-up is: 3.5 of the largest sigma to each side of the mean position
+    np.testing.assert_allclose([frame.get_x(), frame.get_x() + frame.get_width()], side_close.get_xlim())
+    assert frame.get_width() == pytest.approx(7.0 * made_up.samples()[["r_x_m", "r_y_m", "r_z_m"]].std(ddof=0).max())
+    for axes, axis in ((side_close, 0), (front_close, 1)):
+        mesh = next(one for one in axes.collections if isinstance(one, QuadMesh))
+        assert mesh.get_array().sum() == 320  # every sample is in a cell
+        marks = [line.get_xydata()[0] for line in axes.lines if line.get_marker() in ("s", "D", "o")]
+        np.testing.assert_allclose(marks, [[pose[axis], -pose[2]] for pose in MARKED.values()])
     np.testing.assert_allclose(side.lines[0].get_xydata()[2], [0.0, 0.7])  # the top of the triangle, up
     sampled = next(one for one in side.collections if isinstance(one, LineCollection))
     assert len(sampled.get_segments()) == 200
-    assert front.xaxis_inverted()  # seen from the front, the platform's right is on the left
+    assert front.xaxis_inverted()
+    assert front_close.xaxis_inverted()  # seen from the front, the platform's right is on the left
 
 
 def test_trace_and_autocorrelation_have_a_line_for_each_parameter():
-    figure = trace(made_up.samples(), made_up.OPTIMUM)
+    figure = trace(made_up.samples(), {"optimum": made_up.OPTIMUM, "truth": made_up.OPTIMUM + 0.01})
     assert len(figure.axes) == 6
-    np.testing.assert_allclose(figure.axes[1].lines[-1].get_ydata(), -0.14)
+    optimum, truth = figure.axes[1].lines[-2:]
+    np.testing.assert_allclose(optimum.get_ydata(), -0.14)
+    np.testing.assert_allclose(truth.get_ydata(), -0.13)
+    assert legend(figure)[-2:] == ["optimum", "truth"]
     figure = autocorrelation(made_up.samples())
     assert len([line for line in figure.axes[0].lines if len(line.get_xdata()) == made_up.N_STEPS]) == 6
     assert "Lag (steps)" in labels(figure)
@@ -200,6 +249,16 @@ def test_repeatability_leaves_open_splits_out_and_says_by_how_much_sigmas_fail()
     assert "1 splits left" in told
 
 
+def test_repeatability_marks_the_named_subsets_unless_one_leaves_its_pose_open():
+    pair = pd.DataFrame({"subset": ["subset_1", "subset_2"], "mahalanobis": 2.5})
+    figure = repeatability(made_up.splits(), pair)
+    assert "the two named subsets" in legend(figure)
+    assert "named subsets are 2.50 apart" in repeatability_caption(made_up.splits(), pair)
+    unknown = pair.assign(mahalanobis=np.nan)
+    assert "the two named subsets" not in legend(repeatability(made_up.splits(), unknown))
+    assert "named" not in repeatability_caption(made_up.splits(), unknown)
+
+
 @pytest.mark.parametrize(
     ("draw", "table", "column"),
     [
@@ -207,7 +266,7 @@ def test_repeatability_leaves_open_splits_out_and_says_by_how_much_sigmas_fail()
         (lambda table: corner_plot(table, MARKED), made_up.samples, "r_x_m"),
         (lambda table: rotation_axis(table, MARKED), made_up.samples, "theta_x_rad"),
         (lambda table: platform_sketch(table, made_up.platform().outline, MARKED), made_up.samples, "r_z_m"),
-        (lambda table: trace(table, made_up.OPTIMUM), made_up.samples, "r_y_m"),
+        (lambda table: trace(table, {"optimum": made_up.OPTIMUM}), made_up.samples, "r_y_m"),
         (autocorrelation, made_up.samples, "theta_z_rad"),
         (lambda table: residuals(table, "point"), made_up.residuals, "error_u_px"),
         (uncertainty, made_up.uncertainty, "sigma_r_x_m"),

@@ -2,16 +2,12 @@ import pytest
 
 from linepose.figures.render import render_figures
 from linepose.figures.results import PlatformResults
-from linepose.report.page import (
-    PlatformOnPage,
-    figures_on_page,
-    regression_on_page,
-    render_page,
-    settings_text,
-    table_on_page,
-    versions,
-)
-from linepose.report.summary import summarise
+from linepose.report.assemble import platform_on_page
+from linepose.report.made_with import settings_text, versions
+from linepose.report.page import render_page
+from linepose.report.published import published_sections
+from linepose.result_schemas import FIGURES
+from linepose.storage import write_table
 
 from .. import made_up
 from .made_up_page import REGRESSION
@@ -28,9 +24,7 @@ def results(tmp_path_factory):
 def page(results):
     """The whole report of one made-up platform."""
     folder = results.folder / "figures"
-    index = render_figures(results, folder)
-    settings = settings_text(results.platform.model_dump(mode="json"))
-    one = PlatformOnPage(summarise(results), figures_on_page(results.name, folder, index), settings)
+    write_table(render_figures(results, folder), folder / "index.parquet", FIGURES)
+    one = platform_on_page(results, results.platform.model_dump(mode="json"))
     study = settings_text({"data_folders": ["data", "/home/someone/private/data"], "seed": 1})
-    tables = [table_on_page("table3", made_up.pose())]
-    return render_page([one], regression_on_page(REGRESSION), tables, study, versions())
+    return render_page([one], published_sections(REGRESSION, {"table3": made_up.pose()}), study, versions())

@@ -13,8 +13,9 @@ from PIL import Image
 from linepose.errors import InputError
 from linepose.figures.catalogue import FIGURES
 from linepose.observations import survey_from_table
-from linepose.report.page import regression_on_page, settings_text
+from linepose.report.made_with import settings_text
 from linepose.report.pictures import embedded
+from linepose.report.published import published_sections
 from linepose.report.summary import gather_evidence, summarise, tilt_spread_deg
 
 from .. import made_up
@@ -54,9 +55,16 @@ def read(page):
     return reader
 
 
+def left_out():
+    """Places of the figures that a platform of labelled views without further experiments has none of."""
+    names = [f"made-up-{entry.name}" for entry in FIGURES if entry.left_out(made_up.platform())]
+    assert {"made-up-stacked_scan", "made-up-labelled_points", "made-up-detected_points"} <= set(names)
+    return names
+
+
 def test_every_figure_is_a_picture_in_the_page_with_an_alternative_text(read):
     images = read.all("img")
-    assert len(images) == len(FIGURES) - 2  # a platform of labelled views has no scans
+    assert len(images) == len(FIGURES) - len(left_out())
     for image in images:
         head, data = image["src"].split(",", 1)
         assert head == "data:image/png;base64"
@@ -67,10 +75,7 @@ def test_every_figure_is_a_picture_in_the_page_with_an_alternative_text(read):
 
 
 def test_what_is_left_out_has_its_sentence(read):
-    assert [one["id"] for one in read.all("div") if one.get("class") == "left-out"] == [
-        "made-up-stacked_scan",
-        "made-up-labelled_points",
-    ]
+    assert [one["id"] for one in read.all("div") if one.get("class") == "left-out"] == left_out()
     assert "no scans" in " ".join(read.text)
 
 
@@ -114,23 +119,41 @@ def test_names_from_files_are_escaped(page):
 
 def test_the_page_answers_from_the_top(read):
     text = " ".join(" ".join(read.text).split())
-    assert text.index("Use this pose with care") < text.index("0.190 ± 0.03")
+    overview = text[text.index("Overview") : text.index("Can it be trusted?")]
+    assert "Use this pose with care: look at 4 of 8 checks." in overview
+    assert "r_x forward (m) 0.190 0.03" in overview  # the pose with its sigma
+    assert "Halves of the observations differ 2.0 times as much as the sigmas promise. Multiply" in overview
+    assert "The chain has 20 steps where 200 are needed. Set sampling.n_steps to 200" in overview
     assert "Chain too short: 20 steps" in text
     assert "Quaternion (w, x, y, z)" in text
-    assert "Halves of the observations differ 2.0 times" in text
 
 
 def test_published_numbers_are_grouped_with_their_outcome():
-    tables = regression_on_page(REGRESSION)
-    assert [(table.title, table.sentence) for table in tables] == [
-        ("made-up: Table 3", "1 of 2 reproduced within the tolerance."),
-        ("made-up: notebook", "0 of 1 reproduced within the tolerance."),
+    differing, made_up_section, other = published_sections(REGRESSION, {})
+    (table,) = differing.tables
+    assert [row[0] for row in table.rows] == ["made-up, Table 3, r_y_m", "made-up, notebook, neg_log_likelihood"]
+    assert [row[-1] for row in table.rows] == ["known deviation: printed wrongly", "✗ differs"]
+    assert not table.folded
+    assert differing.text.startswith("3 of 5 reproduced within the tolerance, 1 known to deviate, 1 not reproduced.")
+    assert [(table.title, table.sentence) for table in made_up_section.tables] == [
+        ("Table 3", "1 of 2 reproduced within the tolerance, 1 known to deviate."),
+        ("notebook", "0 of 1 reproduced within the tolerance, 1 not reproduced."),
     ]
-    assert [row[-1] for table in tables for row in table.rows] == [
-        "✓ passed",
-        "known deviation: printed wrongly",
-        "✗ differs",
-    ]
+    (single,) = other.tables
+    assert [row[0] for row in single.rows] == ["planted fault 7 removed", "planted fault 9 removed"]
+    assert [row[-1] for row in single.rows] == ["✓ passed", "✓ passed"]
+
+
+def test_notes_of_numbers_that_passed_stand_once_above_their_table():
+    noted = REGRESSION.assign(note=["simulated", "printed wrongly", "", "simulated", "simulated"])
+    _, made_up_section, other = published_sections(noted, {})
+    assert made_up_section.tables[0].sentence.endswith("1 known to deviate. Simulated.")
+    assert other.tables[0].sentence == "2 of 2 reproduced within the tolerance. Simulated."
+
+
+def test_where_everything_is_reproduced_nothing_differs():
+    titles = [section.title for section in published_sections(REGRESSION[REGRESSION["passed"]], {})]
+    assert titles == ["made-up", "other"]
 
 
 def test_settings_keep_values_and_lose_folders():

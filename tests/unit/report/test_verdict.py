@@ -18,13 +18,13 @@ FINE = Evidence(
     worst_error_px=3.0,
     threshold_px=5.0,
     hand_sigmas=1.2,
-    hand_parameter="right, r_y",
+    hand_parameter="r_y right",
     undecided=(),
     sigma_factor=1.05,
     most_influential=5,
     influence=0.6,
     truth_sigmas=1.4,
-    truth_parameter="down, r_z",
+    truth_parameter="r_z down",
 )
 
 
@@ -54,10 +54,10 @@ def test_everything_in_order_says_use_it_and_asks_for_nothing():
             {"alike_in_a_view": 0.31, "sigma_factor": None},
             "Independence within a view",
             Level.CARE,
-            "lower bounds",
+            "noise_model: shared",
         ),
         ({"tilt_spread_deg": 1.4}, "Angular diversity", Level.CARE, "rolled or pitched"),
-        ({"undecided": ("down, r_z",)}, "Angular diversity", Level.CARE, "rolled or pitched"),
+        ({"undecided": ("r_z down",)}, "Angular diversity", Level.CARE, "rolled or pitched"),
         ({"worst_error_px": 4.7}, "Worst observation", Level.CARE, "observation 24"),
         ({"influence": 1.1}, "Worst observation", Level.CARE, "Repeat the view of observation 5"),
         ({"hand_sigmas": 3.1}, "Hand measurement", Level.CARE, "Measure again"),
@@ -70,7 +70,9 @@ def test_each_fault_is_named_with_what_to_do(change, name, level, advice):
     check = named(verdict, name)
     assert (check.level, verdict.level) == (level, level)
     assert advice in check.advice
-    assert name.lower() in verdict.sentence
+    assert verdict.reasons == (check,)
+    assert check.brief
+    assert f"1 of {len(verdict.checks)} checks" in verdict.sentence
     assert all(other.level == Level.GOOD for other in verdict.checks if other is not check)
 
 
@@ -83,7 +85,8 @@ def test_the_papers_chain_is_called_too_short_but_not_its_pose():
 def test_the_worst_level_decides_the_sentence():
     verdict = judge(replace(FINE, converged=False, sigma_factor=2.0))
     assert verdict.level == Level.BAD
-    assert verdict.sentence == "Do not use this pose yet: convergence failed."
+    assert verdict.sentence == "Do not use this pose yet: 1 of 9 checks failed."
+    assert [check.name for check in verdict.reasons] == ["Convergence", "Repeatability"]
 
 
 def test_what_is_not_known_is_not_judged():
@@ -93,7 +96,7 @@ def test_what_is_not_known_is_not_judged():
 
 
 def test_a_parameter_that_only_the_tape_knows_is_named():
-    assert "down, r_z" in named(judge(replace(FINE, undecided=("down, r_z",))), "Angular diversity").found
+    assert "r_z down" in named(judge(replace(FINE, undecided=("r_z down",))), "Angular diversity").found
 
 
 def test_errors_in_common_do_no_harm_where_halves_agree():

@@ -5,10 +5,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from linepose import rotations
+from linepose.extraction.scans import read_scan
 from linepose.simulate import record
 from linepose.simulate.navigation_error import gauss_markov
 from linepose.simulate.projection import exact_projections
-from linepose.simulate.settings import FaultSettings
+from linepose.simulate.render import render
+from linepose.simulate.sensor import band_responses
+from linepose.simulate.settings import FaultSettings, GroundSettings
 from linepose.simulate.trajectory import body_poses, schedule
 
 POSITION = ["north_m", "east_m", "down_m"]
@@ -80,6 +84,25 @@ def test_truth_says_what_is_visible_and_faulty(camera, quick):
     np.testing.assert_allclose(table[["r_x_m", "theta_z_rad"]].to_numpy()[0], [0.189, -1.429])
 
 
+def test_truth_says_how_far_a_point_is_and_how_fast_it_crosses_the_line(camera, quick):
+    forward = replace(quick.passes[0], speed_m_s=0.2)
+    level = replace(quick, passes=(quick.passes[0], forward), ground=GroundSettings(body_height_m=1.0))
+    table = record.truth_table(camera, level)
+    by_pass = table.groupby("observation")[["range_m", "v_px_per_line"]].mean()
+    np.testing.assert_allclose(by_pass["v_px_per_line"][1], -by_pass["v_px_per_line"][2], rtol=0.02)
+    # a point in the scan line's plane moves by f_px/z times the drive's part across that plane
+    truth = exact_projections(camera, level)
+    rotation = rotations.matrix_from_euler(truth.euler_rad[1]) @ rotations.matrix_from_rotation_vector(truth.pose[3:])
+    centre = truth.position_m[1] + rotations.matrix_from_euler(truth.euler_rad[1]) @ truth.pose[:3]
+    in_camera = np.einsum("mji,mj->mi", rotation, truth.point_m - centre)
+    heading = truth.euler_rad[1, 0, 2]
+    drive = np.einsum("mji,j->mi", rotation, 0.2 / 133.0 * np.array([np.cos(heading), np.sin(heading), 0.0]))
+    expected = -camera.focal_length_px * drive[:, 1] / in_camera[:, 2]
+    second = table[table["observation"] == 2]
+    np.testing.assert_allclose(second["v_px_per_line"], expected, rtol=1e-6)
+    np.testing.assert_allclose(second["range_m"], np.linalg.norm(in_camera, axis=1), rtol=1e-12)
+
+
 def test_survey_repeats_byte_for_byte_and_changes_with_the_seed(tmp_path, camera, quick):
     noisy = replace(quick, passes=quick.passes[:1], navigation_error=gauss_markov([0.01] * 6, 30.0))
     for name, seed in (("first", 1), ("again", 1), ("other", 2)):
@@ -104,6 +127,20 @@ def test_survey_repeats_byte_for_byte_and_changes_with_the_seed(tmp_path, camera
     } == set(digests["first"])
     for changed in ("scans/observation-01.bil", "navigation.parquet", "labels.csv"):
         assert digests["first"][changed] != digests["other"][changed]
+
+
+def test_scan_of_many_bands_reads_back_as_the_light(tmp_path, camera, quick):
+    quickest = replace(quick.passes[0], speed_m_s=-1.0, duration_s=1.2)
+    many = replace(quick, passes=(quickest,), image=replace(quick.image, n_bands=244))
+    record.write_survey(tmp_path, camera, many)
+    intensity = read_scan(tmp_path / "scans" / "observation-01.hdr").intensity
+    white = many.image.full_scale_electrons
+    expected = 4095 * band_responses(244).mean() * render(camera, many, 1).light
+    # six sigmas of the mean of 244 bands' shot and read noise at full scale
+    assert intensity.shape == expected.shape
+    noise = 4095 / white * np.sqrt((white + many.image.read_noise_electrons**2) / 244)
+    np.testing.assert_allclose(intensity, expected, atol=6 * noise)
+    assert np.ptp(intensity) > 50 * noise
 
 
 def test_clock_offset_is_in_the_scan_times_alone(tmp_path, camera, quick):

@@ -6,7 +6,7 @@ import pytest
 from linepose.pattern import DOT_DIAMETER_M
 from linepose.simulate.projection import exact_projections
 from linepose.simulate.record import true_lines
-from linepose.simulate.render import line_times_s, render
+from linepose.simulate.render import _turned_grid, line_times_s, render
 from linepose.simulate.settings import FaultSettings, GroundSettings
 
 REACH_PX = 4  # the dot and its blur, well within the ring's inner edge
@@ -37,6 +37,27 @@ def test_rendered_dots_lie_at_the_exact_projections(camera, settings, observatio
         found_u, found_line = dot_centre(light, u, line, half_lines)
         assert found_u == pytest.approx(u, abs=off_m / range_m * camera.focal_length_px)
         assert found_line == pytest.approx(line, abs=off_m * 1.8 * lines_per_m)
+
+
+@pytest.mark.parametrize("n", [1, 2, 4, 6])
+def test_samples_fill_the_field_of_view_evenly_and_none_shares_its_row(n):
+    grid = _turned_grid(n)
+    np.testing.assert_array_equal(np.unique(np.floor((grid + 0.5) * n), axis=1).shape, (2, n * n))
+    for along in grid:
+        np.testing.assert_allclose(np.sort(along), (np.arange(n * n) + 0.5) / (n * n) - 0.5, atol=1e-15)
+    assert grid[0] @ grid[1] == pytest.approx(0, abs=1e-12)  # no shear of what is seen
+
+
+def test_edge_in_a_slow_pass_is_a_slope_not_a_flight_of_stairs(camera, settings):
+    slow = flat_passes(settings, 0.02)
+    slow = replace(slow, image=replace(slow.image, supersampling=4))
+    light, lines = render(camera, slow, 1).light, true_lines(camera, slow)[0]
+    u = round(exact_projections(camera, slow).u_px[0, 7])
+    middle = round(lines[7])
+    hole_to_ring = light[middle : middle + round(0.05 * 133 / 0.02), u].astype(float)
+    steps = np.abs(np.diff(hole_to_ring))
+    # 32 samples, 16 at each of 2 moments: no step is as high as a straight grid's row of four
+    assert 0 < steps.max() < 3.5 / 32 * np.ptp(hole_to_ring)
 
 
 def flat_passes(settings, *speeds):

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.result_schemas import TRUTH_ERROR
 from linepose.tables.experiments_regression import BASIN_ROWS_OF
-from linepose.tables.simulated import fault_rows, sigma_rows, truth_rows
+from linepose.tables.simulated import extraction_rows, fault_rows, sigma_rows, truth_rows
 from linepose.tables.truth_error import true_pose, truth_error_table
 
 TRUTH = np.array([0.2, -0.1, -0.8, -0.8, 0.7, -1.4])
@@ -101,13 +101,60 @@ def test_faults_are_the_observations_removed():
     }
 
 
+def test_wholes_are_held_to_the_published_sigmas_of_their_parts(errors):
+    error, _, table = errors
+    rows = {row["quantity"]: row for row in truth_rows("robot", PUBLISHED, table)}
+    position = rows["robot, error against truth, position_m"]
+    assert position["obtained"] == pytest.approx(np.linalg.norm(error[:3]))
+    assert position["tolerance"] == pytest.approx(3 * np.sqrt(0.03**2 + 0.05**2 + 0.06**2))
+    rotation = rows["robot, error against truth, rotation_rad"]
+    assert rotation["tolerance"] == pytest.approx(3 * np.sqrt(0.016**2 + 0.018**2 + 0.009**2))
+
+
+def extraction(n_found, n_wrong, bias=0.0, sigma=0.01):
+    accuracy = pd.DataFrame(
+        {
+            "chosen": [True, False] * 2,
+            "n_points": 15,
+            "n_missing": 0,
+            "bias_u_px": [bias, 9.0] * 2,
+            "sigma_u_px": [sigma, 9.0] * 2,
+            "bias_v_px": 0.1,
+            "sigma_v_px": 0.0,
+        }
+    )
+    detection = pd.DataFrame({"n_visible": [50, 50], "n_found": n_found, "n_wrong": n_wrong})
+    return extraction_rows("robot", accuracy, detection, {"u_px": 0.5, "v_px": 0.05})
+
+
+@pytest.mark.parametrize(
+    ("n_found", "n_wrong", "passed"),
+    [
+        ([50, 45], [0, 0], [True, True]),
+        ([50, 44], [0, 0], [False, True]),
+        ([50, 50], [1, 0], [True, False]),
+        ([50, 50], [3, 3], [False, False]),
+    ],
+)
+def test_detection_finds_nearly_all_and_mistakes_none(n_found, n_wrong, passed):
+    assert [row["passed"] for row in extraction(n_found, n_wrong)[:2]] == passed
+
+
+def test_extraction_holds_to_the_cameras_sigmas():
+    u, v = extraction([50, 50], [0, 0], bias=0.3, sigma=0.2)[2:]
+    assert u["obtained"] == pytest.approx(np.sqrt(0.3**2 + 0.2**2 * 14 / 15))
+    assert u["passed"]
+    assert v["obtained"] == pytest.approx(0.1)
+    assert not v["passed"]
+
+
 def test_error_beyond_its_own_sigmas_is_shown_and_explained(errors):
     table = errors[2].copy()
     table.loc[table["quantity"] == "r_x_m", "error_in_sigmas"] = -4.0
     rows = {row["quantity"]: row for row in truth_rows("robot", PUBLISHED, table)}
     beyond = rows["robot, error against truth in sigmas, r_x_m"]
     assert (beyond["passed"], beyond["known_deviation"], beyond["obtained"]) == (False, True, -4.0)
-    assert "sigmas are too small" in beyond["note"]
+    assert "sigmas come out too small" in beyond["note"]
     assert rows["robot, error against truth, r_x_m"]["passed"]
     assert not rows["robot, error against truth in sigmas, r_y_m"]["known_deviation"]
     limits = [

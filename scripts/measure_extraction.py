@@ -1,0 +1,25 @@
+"""Hold what extraction finds in a simulated platform's scans, with labels and without, against the truth."""
+
+from pathlib import Path
+
+import pandas as pd
+from adapter import stage
+
+with stage(snakemake) as log:
+    from linepose.config.platform import Platform
+    from linepose.extraction.labels import read_labels
+    from linepose.extraction.measured import measure_extraction
+    from linepose.extraction.scan_survey import select_scans
+    from linepose.result_schemas import DETECTION, EXTRACTION_ACCURACY, SCAN_POINTS
+    from linepose.storage import write_table
+
+    platform = Platform.model_validate(snakemake.params.platform)
+    folder, source = Path(snakemake.input.folder), platform.source
+    scans = select_scans(folder, source.scans, source.left_out)
+    labels, truth = read_labels(folder / source.labels, list(scans)), pd.read_parquet(snakemake.input.truth)
+    measured = measure_extraction(scans, labels, truth, source.refinement, platform.camera.n_pixels)
+    write_table(measured.accuracy, snakemake.output.accuracy, EXTRACTION_ACCURACY)
+    write_table(measured.detection, snakemake.output.detection, DETECTION)
+    write_table(measured.points, snakemake.output.points, SCAN_POINTS)
+    counts = measured.detection[["n_found", "n_visible", "n_wrong"]].sum()
+    log.info("detected %d of %d visible points, %d with a wrong id", *counts)

@@ -1,0 +1,17 @@
+from linepose.api import calibrate_platform as calibrate_platform
+from linepose.api import load_observations as load_observations
+from linepose.api import load_platform_file as load_platform_file
+from linepose.api import observations_from_arrays as observations_from_arrays
+from linepose.calibrated import Calibration as Calibration
+from linepose.calibrated import HandMeasured as HandMeasured
+from linepose.calibration import CalibrationSettings as CalibrationSettings
+from linepose.calibration import calibrate as calibrate
+from linepose.camera import Camera as Camera
+from linepose.camera import CameraSigmas as CameraSigmas
+from linepose.check.platform import check_platform as check_platform
+from linepose.errors import EstimationError as EstimationError
+from linepose.errors import InputError as InputError
+from linepose.errors import LineposeError as LineposeError
+from linepose.optimise import Search as Search
+from linepose.sampling import IndependenceSettings as IndependenceSettings
+from linepose.sampling import SamplingSettings as SamplingSettings

@@ -1,0 +1,96 @@
+"""Whether camera and navigation tell the same time: overlap, gaps, and the offset that would explain a miss."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linepose.check.finding import Finding, error, ok, warning
+
+Times = NDArray[np.int64]
+
+_SUBJECT: Final = "time"
+_NAMED_OFFSETS_S: Final = (
+    (18, "GPS time against UTC (18 leap seconds since 2017)"),
+    (17, "GPS time against UTC (17 leap seconds, 2015 to 2016)"),
+    (37, "TAI against UTC"),
+    (19, "TAI against GPS time"),
+    (315_964_800, "the GPS epoch of 1980 against that of 1970"),
+    (315_964_782, "the GPS epoch and 18 leap seconds"),
+    *((hours * 3600, f"a time zone of {hours} h") for hours in range(1, 15)),
+    (86_400, "a day"),
+)
+
+
+def overlap_findings(time_us: Times, navigation_us: Times, what: str) -> list[Finding]:
+    """Whether times of points (P,) lie within those of the navigation (K,), increasing; `what` names the latter."""
+    start, end = navigation_us[0], navigation_us[-1]
+    outside = (time_us < start) | (time_us > end)
+    if not outside.any():
+        return [ok(_SUBJECT, f"all {len(time_us)} points lie within the {what} ({(end - start) / 1e6:.0f} s)")]
+    if not outside.all():
+        late = float(max((time_us - end).max(), (start - time_us).max())) / 1e6
+        return [
+            error(
+                _SUBJECT,
+                f"{int(outside.sum())} of {len(time_us)} points lie up to {late:.3g} s outside the {what}",
+                "complete the navigation log, leave these observations out, or correct the clocks",
+            )
+        ]
+    earliest, latest = (start - time_us.min()) / 1e6, (end - time_us.max()) / 1e6
+    found = f"no point lies within the {what}: points from {_told(time_us.min())}, {what} from {_told(start)}"
+    names = [
+        f"{sign * seconds:+d} s: {name}"
+        for seconds, name in _NAMED_OFFSETS_S
+        for sign in (1, -1)
+        if earliest <= sign * seconds <= latest
+    ]
+    if names:
+        return [error(_SUBJECT, found, f"correct the camera's clock; these shifts fit: {'; '.join(names[:3])}")]
+    advice = f"correct the camera's clock by {earliest:.1f} to {latest:.1f} s, or bring the log of that day"
+    return [error(_SUBJECT, found, advice if earliest <= latest else "bring the log that covers the whole survey")]
+
+
+def gap_findings(time_us: Times, navigation_us: Times, maximum_s: float, what: str, key: str) -> list[Finding]:
+    """How far points lie from the nearest navigation time; those farther than `maximum_s` stop the run."""
+    gap_s = nearest_gap_s(time_us, navigation_us)
+    beyond = int((gap_s > maximum_s).sum())
+    found = f"nearest {what} at most {gap_s.max():.3f} s away"
+    if beyond:
+        return [
+            error(
+                _SUBJECT,
+                f"{found}, for {beyond} of {len(time_us)} points more than {maximum_s:g} s",
+                f"complete the log, leave these observations out, correct the clocks, or raise {key}",
+            )
+        ]
+    return [ok(_SUBJECT, f"{found} (limit {maximum_s:g} s)")]
+
+
+def nearest_gap_s(time_us: Times, navigation_us: Times) -> NDArray[np.float64]:
+    """Time (P,) from each point (P,) to the nearest navigation time (K,), in seconds."""
+    after = np.searchsorted(navigation_us, time_us).clip(0, len(navigation_us) - 1)
+    before = (after - 1).clip(0)
+    gap = np.minimum(np.abs(navigation_us[after] - time_us), np.abs(navigation_us[before] - time_us))
+    return np.asarray(gap / 1e6)
+
+
+def rate_findings(log_us: Times, maximum_gap_s: float) -> list[Finding]:
+    """How often the navigation log has a pose (K,)."""
+    step_s = float(np.median(np.diff(log_us))) / 1e6
+    found = f"a pose every {step_s:.3g} s in the navigation log"
+    if step_s > maximum_gap_s:
+        return [
+            error(
+                _SUBJECT,
+                f"{found}, but navigation.maximum_pose_gap_s is {maximum_gap_s:g} s",
+                "log the navigation more often (100 Hz is common), or raise navigation.maximum_pose_gap_s",
+            )
+        ]
+    if step_s > 0.5 * maximum_gap_s:
+        return [warning(_SUBJECT, found, "log it more often, and set navigation.association: interpolate")]
+    return [ok(_SUBJECT, found)]
+
+
+def _told(time_us: np.int64) -> str:
+    return f"{np.datetime64(int(time_us) // 1_000_000, 's')} UTC"

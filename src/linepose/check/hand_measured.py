@@ -1,0 +1,62 @@
+"""Whether the hand-measured pose can be about right: points in front of the camera, where they were seen."""
+
+from typing import Final
+
+import numpy as np
+
+from linepose.camera import Camera
+from linepose.check.finding import Finding, error, numbers, ok, span, warning
+from linepose.check.replay import in_camera
+from linepose.likelihood.published import PublishedLikelihood
+from linepose.observations import Survey
+from linepose.rotations import Floats
+
+_EXPLAINED: Final = 3.0  # sigmas of the hand measurement that an error may have
+_NEAR_M: Final = 0.05
+_FAR_M: Final = 200.0
+_LONGEST_ARM_M: Final = 10.0
+_SUBJECT: Final = "hand measurement"
+ADVICE: Final = (
+    "check hand_measured: camera in body axes (x forward, y right, z down), angles roll, pitch, yaw from camera to "
+    "body (zyx intrinsic), camera x along the scan line, z the optical axis"
+)
+
+
+def hand_findings(survey: Survey, camera: Camera, pose: Floats, covariance: Floats) -> tuple[list[Finding], Floats]:
+    """Findings on a hand-measured pose (6,) with covariance (6, 6), and the points (M, 3) that it gives.
+
+    The points are those of the paper's equations, in which points behind the camera count as if in front.
+    """
+    findings = []
+    if np.linalg.norm(pose[:3]) > _LONGEST_ARM_M:
+        found = f"the camera is {np.linalg.norm(pose[:3]):.3g} m from the body's origin"
+        findings.append(
+            warning(_SUBJECT, found, "give hand_measured.position_m in metres, from the navigation's origin")
+        )
+    residuals = PublishedLikelihood(survey, camera).mirrored().residuals(pose)
+    distance = in_camera(pose, survey.position_m, survey.euler_rad, residuals.point_m)[..., 2]
+    seen = np.isfinite(residuals.error_px)
+    behind = seen & (distance <= 0)
+    if behind.any():
+        views = survey.number[behind.any(axis=1)]
+        found = f"{int(behind.sum())} of {int(seen.sum())} points lie behind the camera (observation {numbers(views)})"
+        return [*findings, error(_SUBJECT, found, ADVICE)], residuals.point_m
+    where = f"the points lie {span(distance[seen])} m in front of the camera"
+    if distance[seen].min() < _NEAR_M or distance[seen].max() > _FAR_M:
+        findings.append(warning(_SUBJECT, where, "check the units of positions and of hand_measured.position_m (m)"))
+    else:
+        findings.append(ok(_SUBJECT, where))
+    mean_px = float(np.nanmean(residuals.error_px))
+    allowed_px = expected_error_px(camera, covariance, float(np.median(distance[seen])))
+    told = f"it reproduces the pixels within {mean_px:.1f} px on average; its sigmas explain about {allowed_px:.0f} px"
+    if mean_px > _EXPLAINED * allowed_px:
+        findings.append(warning(_SUBJECT, told, f"{ADVICE}; and the navigation's axes and angles"))
+    else:
+        findings.append(ok(_SUBJECT, told))
+    return findings, residuals.point_m
+
+
+def expected_error_px(camera: Camera, covariance: Floats, distance_m: float) -> float:
+    """Error (px) that a pose's covariance (6, 6) makes for points at this distance along the optical axis."""
+    variance = float(np.trace(covariance[3:, 3:])) + float(np.trace(covariance[:3, :3])) / distance_m**2
+    return camera.focal_length_px * float(np.sqrt(variance * 2 / 3))

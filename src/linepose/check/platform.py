@@ -1,0 +1,241 @@
+"""Everything that can be known of a platform before a run, in one pass and in seconds."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, TypeVar
+
+import numpy as np
+import pandas as pd
+
+from linepose.check import clock, covariances
+from linepose.check.camera import camera_findings
+from linepose.check.conventions import convention_findings
+from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, error, of_fault, ok
+from linepose.check.hand_measured import hand_findings
+from linepose.check.labels import count_findings, position_findings
+from linepose.check.motion import motion_findings
+from linepose.check.prediction import predict
+from linepose.check.scans import scan_findings
+from linepose.check.views import view_findings
+from linepose.config.platform import (
+    LabelledViewsSection,
+    Platform,
+    ScansSection,
+    load_platform,
+    platform_faults,
+    read_yaml,
+)
+from linepose.config.project import Project
+from linepose.config.study import check_study
+from linepose.csv_files import read_numbers
+from linepose.datasets import check_dataset
+from linepose.doctor.examine import HandSigmas, RecordingAt
+from linepose.doctor.recording import Recording
+from linepose.errors import InputError, LineposeError
+from linepose.navigation import NavigationCovariances
+from linepose.navigation_log import NavigationLog
+from linepose.observations import Survey, check_determined, survey_from_table, table_from_survey
+from linepose.pose import N_PARAMETERS
+from linepose.project_folder import CONFIG, find_project, load_platform_project
+from linepose.recorded import read_log, read_reported, with_navigation
+from linepose.simulate.survey import simulate_survey
+
+_COVARIANCE_SIZE: Final = 12
+Read = TypeVar("Read")
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What could be read of a platform's files; None where it could not."""
+
+    points: pd.DataFrame | None = None
+    log: NavigationLog | None = None
+    covariances: NavigationCovariances | None = None
+
+
+def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
+    """All findings on a platform of the project in or above a folder.
+
+    Raises InputError where there is no project; every other fault is a finding.
+    """
+    root = find_project(project)
+    findings = configuration_findings(platform, root)
+    if any(finding.level == Level.ERROR for finding in findings):
+        return CheckReport(platform, tuple(findings))
+    study = check_study(read_yaml(root / CONFIG) | {"platforms": [platform]})
+    settings = load_platform(root / study.platforms_folder, platform)
+    findings += camera_findings(settings.intrinsics())
+    try:
+        loaded = load_platform_project(platform, root, lambda _: False)
+    except InputError as fault:
+        return CheckReport(platform, (*findings, of_fault("data set", fault)))
+    more, observations = recorded_findings(loaded, platform, root)
+    findings += more
+    if observations is None or any(finding.level == Level.ERROR for finding in findings):
+        return CheckReport(platform, tuple(findings))
+    more, sigmas = geometry_findings(settings, observations, _recorder(loaded, platform, root, observations))
+    return CheckReport(platform, (*findings, *more), sigmas)
+
+
+def configuration_findings(platform: str, root: Path) -> list[Finding]:
+    """Every fault of config.yaml and of the platform's file, or that there is none."""
+    try:
+        study = check_study(read_yaml(root / CONFIG) | {"platforms": [platform]}, str(root / CONFIG))
+    except InputError as fault:
+        return [of_fault("configuration", fault)]
+    faults = platform_faults(root / study.platforms_folder, platform)
+    if faults:
+        return [of_fault("platform file", fault) for fault in faults]
+    return [ok("platform file", f"{study.platforms_folder}/{platform}.yaml has every key it needs")]
+
+
+def recorded_findings(project: Project, platform: str, root: Path) -> tuple[list[Finding], pd.DataFrame | None]:
+    """Findings on what the platform recorded, and its table of observations where that can be used."""
+    settings = project.platforms[platform]
+    folder = root / project.folder(platform)
+    if settings.source.dataset is None and not folder.is_dir():
+        return _simulated(settings)
+    if not folder.is_dir():
+        found = f"{folder}: no such folder"
+        if settings.source.dataset in project.datasets:
+            return [
+                error("data set", found, f"it is downloaded by `linepose run {platform}`; check again after it")
+            ], None
+        return [error("data set", found, "put the platform's files there, or correct source.dataset")], None
+    findings, points = [*_sum_findings(project, platform, folder)], None
+    n_pixels, source = settings.camera.n_pixels, settings.source
+    if isinstance(source, LabelledViewsSection):
+        more, points = view_findings(source, folder, n_pixels)
+    else:
+        more, points = scan_findings(source, folder, n_pixels)
+    findings += more
+    if points is not None:
+        findings += count_findings(points, project.study.outliers.minimum_observations)
+    more, recorded = _navigation_findings(settings, folder, points)
+    findings += more
+    if any(finding.level == Level.ERROR for finding in findings) or recorded.points is None:
+        return findings, None
+    try:
+        observations = with_navigation(recorded.points, settings, folder)
+        check_determined(survey_from_table(observations), N_PARAMETERS)
+    except InputError as fault:
+        return [*findings, of_fault("observations", fault)], None
+    return findings, observations
+
+
+def geometry_findings(
+    settings: Platform, observations: pd.DataFrame, recording_at: RecordingAt
+) -> tuple[list[Finding], tuple[PredictedSigma, ...]]:
+    """Findings on motion, hand-measured pose, conventions and predicted sigmas, of a usable table of observations."""
+    survey, camera = survey_from_table(observations), settings.intrinsics()
+    findings = motion_findings(survey)
+    pose, covariance = settings.start_pose(), settings.start_covariance()
+    try:
+        more, point_m = hand_findings(survey, camera, pose, covariance)
+    except LineposeError as fault:
+        return [*findings, error("hand measurement", str(fault), "check hand_measured and the navigation's axes")], ()
+    hand = settings.hand_measured
+    more += convention_findings(
+        recording_at, HandSigmas(hand.sigma_position_m, float(np.radians(hand.sigma_euler_deg)))
+    )
+    findings += more
+    if any(finding.level == Level.ERROR for finding in more):
+        return findings, ()
+    sigma = np.repeat([hand.sigma_position_m, np.radians(hand.sigma_euler_deg)], 3)
+    prediction = predict(survey, camera, pose, sigma, point_m)
+    return [*findings, *prediction.findings], prediction.sigmas
+
+
+def _recorder(project: Project, platform: str, root: Path, observations: pd.DataFrame) -> RecordingAt:
+    """What the convention doctor looks at: the observations, read again where it moves the camera's clock."""
+    settings, folder = project.platforms[platform], root / project.folder(platform)
+
+    def recording_at(shift_s: float) -> Recording:
+        table = observations
+        if shift_s:
+            if not _has_log(settings) or not folder.is_dir():
+                raise InputError(platform, "no navigation log", "one in which the clock can be moved", "go on without")
+            shift_us = round(shift_s * 1e6)
+            points = observations[["observation", "point", "time_us", "u_px"]]
+            table = with_navigation(points.assign(time_us=points["time_us"] + shift_us), settings, folder)
+        return Recording(survey_from_table(table), settings.intrinsics(), settings.start_pose())
+
+    return recording_at
+
+
+def _sum_findings(project: Project, platform: str, folder: Path) -> list[Finding]:
+    """Whether every file of a public data set is there and unaltered; a user's own files have no sums."""
+    dataset = project.platforms[platform].source.dataset
+    if dataset is None or dataset not in project.datasets:
+        return [ok("data set", f"{folder}")]
+    try:
+        sums = check_dataset(folder, project.datasets[dataset].sha256)
+    except InputError as fault:
+        return [of_fault("data set", fault)]
+    return [ok("data set", f"{folder}: {len(sums)} files, unaltered")]
+
+
+def _navigation_findings(
+    settings: Platform, folder: Path, points: pd.DataFrame | None
+) -> tuple[list[Finding], Recorded]:
+    """Findings on navigation log, covariances, and their times against those of the points."""
+    findings: list[Finding] = []
+    log = _attempt(read_log, settings, folder, "navigation log", findings) if _has_log(settings) else None
+    reported = _attempt(read_reported, settings, folder, "covariances", findings)
+    if reported is not None:
+        findings += covariances.size_findings(reported)
+        if settings.source.covariances is not None:
+            findings += _column_findings(settings, folder / settings.source.covariances)
+    navigation = settings.navigation
+    if log is not None:
+        findings += position_findings(log.position_m)
+        findings += clock.rate_findings(log.time_us, navigation.maximum_pose_gap_s)
+    if points is not None:
+        time_us = points["time_us"].to_numpy()
+        if log is not None:
+            findings += clock.overlap_findings(time_us, log.time_us, "navigation log")
+        if reported is not None:
+            about = "covariance", "navigation.maximum_gap_s"
+            within = clock.overlap_findings(time_us, reported.time_us, "covariances")
+            gaps = clock.gap_findings(time_us, reported.time_us, navigation.maximum_gap_s, *about)
+            findings += within if within[0].level == Level.ERROR and gaps[0].level == Level.ERROR else gaps
+    return findings, Recorded(points, log, reported)
+
+
+def _has_log(settings: Platform) -> bool:
+    return isinstance(settings.source, ScansSection)
+
+
+def _attempt(
+    read: Callable[[Platform, Path], Read], settings: Platform, folder: Path, subject: str, findings: list[Finding]
+) -> Read | None:
+    """What a reader gives, or None with its fault among the findings."""
+    try:
+        return read(settings, folder)
+    except InputError as fault:
+        findings.append(of_fault(subject, fault))
+        return None
+
+
+def _column_findings(settings: Platform, path: Path) -> list[Finding]:
+    """Which columns of the 12x12 covariances look like the attitude."""
+    _, values = read_numbers(path, 1 + _COVARIANCE_SIZE**2, "12x12 covariances")
+    variances = values.reshape(-1, _COVARIANCE_SIZE, _COVARIANCE_SIZE).diagonal(axis1=1, axis2=2)
+    sigma = np.sqrt(np.maximum(np.median(variances, axis=0), 0.0))
+    return covariances.attitude_findings(sigma, settings.navigation.covariance_columns)
+
+
+def _simulated(settings: Platform) -> tuple[list[Finding], pd.DataFrame | None]:
+    """A simulated platform that has not been run: its geometry can be checked all the same."""
+    if settings.simulation is None:
+        return [], None
+    survey, _ = simulate_survey(settings.intrinsics(), settings.simulation, settings.simulation.seed)
+    found = f"simulated, not made yet: {len(settings.simulation.passes)} passes; checked without images"
+    return [ok("data set", found)], table_from_survey(_with_numbers(survey))
+
+
+def _with_numbers(survey: Survey) -> Survey:
+    return survey.select(
+        [int(number) for number, row in zip(survey.number, survey.u_px, strict=True) if np.isfinite(row).any()]
+    )

@@ -1,0 +1,79 @@
+"""Scans, their time stamps and labels, from headers and small files: no image is read."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from linepose.check.finding import Finding, error, numbers, of_fault, of_faults, ok, warning
+from linepose.check.labels import sensor_findings
+from linepose.config.platform import ScansSection
+from linepose.errors import InputError
+from linepose.extraction.scan_survey import select_scans
+from linepose.extraction.scans import scan_size
+from linepose.formats.labels import read_point_labels
+from linepose.formats.line_times import line_times_of
+
+
+def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[list[Finding], pd.DataFrame | None]:
+    """Findings on scans and labels, and the labelled points with times: observation, point, time_us, u_px, line.
+
+    The points are as labelled, not refined; none where they are found without labels, or cannot be used.
+    """
+    try:
+        scans = select_scans(folder, source.scans, source.left_out)
+    except InputError as fault:
+        return [of_fault("scans", fault)], None
+    times, faults, widths, line_times = {}, [], {}, line_times_of(source)
+    for number, path in scans.items():
+        try:
+            n_lines, widths[number] = scan_size(path)
+            times[number] = line_times(path, n_lines)
+        except InputError as fault:
+            faults.append(fault)
+    findings = of_faults("scans", faults)
+    other = [number for number, width in widths.items() if width != n_pixels]
+    if other:
+        found = f"scan {numbers(other)}: {widths[other[0]]} pixels a line, camera.n_pixels is {n_pixels}"
+        findings.append(error("scans", found, f"set camera.n_pixels: {widths[other[0]]}, or restore the scans"))
+    if not findings:
+        findings.append(ok("scans", f"{len(scans)} scans of {n_pixels} pixels, a time stamp for each line"))
+    if source.points == "detection":
+        found = (
+            "points are found without labels: their numbers, and predicted sigmas, are known after the run's extraction"
+        )
+        return [*findings, ok("labels", found)], None
+    try:
+        labels = read_point_labels(folder, source.labels, scans, n_pixels)
+    except InputError as fault:
+        return [*findings, of_fault("labels", fault)], None
+    label_findings, points = _timed(labels[labels["observation"].isin(times)], times, n_pixels)
+    unlabelled = sorted(set(scans) - set(labels["observation"]))
+    if unlabelled:
+        found = f"scan {numbers(unlabelled)}: no label, left out"
+        label_findings.append(warning("labels", found, "label it, or add it to source.left_out"))
+    return [*findings, *label_findings], points
+
+
+def _timed(
+    labels: pd.DataFrame, times: dict[int, np.ndarray], n_pixels: int
+) -> tuple[list[Finding], pd.DataFrame | None]:
+    """Findings on labels of readable scans, and the labels with their times where all lie within their scans."""
+    if labels.empty:
+        return [error("labels", "no label of a readable scan", "label the scans: observation, point, u_px, line")], None
+    place = [f"observation {o:g}, point {p:g}" for o, p in zip(labels["observation"], labels["point"], strict=True)]
+    findings = sensor_findings(labels.assign(place=place), n_pixels)
+    count = labels["observation"].map({number: len(stamps) for number, stamps in times.items()}).to_numpy()
+    line = labels["line"].to_numpy()
+    beyond = np.flatnonzero((line < -0.5) | (line > count - 0.5))
+    if beyond.size:
+        first = int(beyond[0])
+        found = f"{beyond.size} labels outside their scans; the first is {place[first]}, line {line[first]:g}"
+        findings.append(error("labels", f"{found} of {count[first]}", "correct the labels: lines count from 0"))
+    if any(finding.level > 0 for finding in findings if finding.subject == "labels" and finding.advice):
+        return findings, None
+    stamps = [
+        np.interp(at, np.arange(len(times[number])), times[number])
+        for number, at in zip(labels["observation"], line, strict=True)
+    ]
+    return findings, labels.assign(time_us=np.rint(stamps).astype(np.int64))

@@ -1,0 +1,26 @@
+"""All commands under one name, and how their faults are told."""
+
+import typer
+
+from linepose.cli import check, export, label, new, run, show
+from linepose.cli.faults import OneLineFaults
+
+app = typer.Typer(
+    name="linepose",
+    cls=OneLineFaults,
+    help="Where exactly is the line-scan camera on the vehicle, and how sure is that?\n\n"
+    "The way of a platform: **new** writes its file, **label** marks the pattern's points where scans "
+    "are not labelled yet, **check** tells what is wrong before a run, **run** calibrates, "
+    "**show** tells the pose, **export** writes it for the robot.",
+    no_args_is_help=True,
+    rich_markup_mode="markdown",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command(name="new")(new.new)
+app.command(name="label")(label.label)
+app.command(name="check")(check.check)
+app.command(name="run")(run.run)
+app.command(name="show")(show.show)
+app.command(name="export")(export.export)

@@ -1,0 +1,37 @@
+"""`linepose check NAME`: everything that can be known before a run, all findings at once."""
+
+import logging
+
+import typer
+
+from linepose.cli.options import HERE, Name, ProjectFolder
+
+
+def check(name: Name, project: ProjectFolder = HERE) -> None:
+    """Tell what is wrong with a platform before a run: all findings at once, in seconds.
+
+    Looks at the platform's file, units, times, labels, covariances and the hand measurement, and predicts how well each
+    number of the pose will be known and which motion would help most. Exit code 1 where something must be mended.
+    """
+    from rich.console import Console
+
+    from linepose.check.finding import Level
+    from linepose.check.platform import check_platform
+    from linepose.cli.findings import findings_table, plain_findings, plain_sigmas, sigmas_table, summary
+    from linepose.project_folder import find_project
+
+    logging.getLogger("linepose").setLevel(logging.ERROR)  # readers' warnings are findings here
+    root = find_project(project)
+    console = Console()
+    with Console(stderr=True).status("checking (the first time, a minute to compile)", spinner="dots"):
+        report = check_platform(name, root)
+    if console.is_terminal:
+        console.print(findings_table(report))
+        if report.predicted:
+            console.print(sigmas_table(report))
+        console.print(summary(report), soft_wrap=True)
+    else:
+        for line in [*plain_findings(report), *plain_sigmas(report), summary(report)]:
+            typer.echo(line)
+    if report.level == Level.ERROR:
+        raise typer.Exit(1)

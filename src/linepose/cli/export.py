@@ -1,0 +1,53 @@
+"""`linepose export NAME --format FORMAT`: the result as robots and maps read it."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from linepose.cli.options import HERE, Name, ProjectFolder
+
+
+def _tell_formats(asked: bool) -> None:
+    if asked:
+        from linepose.exports import EXPORTS
+
+        for key, exporter in EXPORTS.items():
+            typer.echo(f"{key:12s}{exporter.title}")
+        raise typer.Exit
+
+
+def export(
+    name: Name,
+    format: Annotated[str, typer.Option("--format", "-f", help="One of those that --list tells.")] = "",
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="File, or folder to write into.", show_default="results/NAME/exports"),
+    ] = None,
+    parent_frame: Annotated[str, typer.Option(help="Name of the body's frame.")] = "base_link",
+    child_frame: Annotated[str, typer.Option(help="Name of the camera's frame.")] = "line_camera_optical",
+    body_axes: Annotated[
+        str, typer.Option(help="flu or frd: forward, left, up or forward, right, down.", show_default="of the format")
+    ] = "",
+    stage: Annotated[str, typer.Option(help="inliers, all, or hand_measured.")] = "inliers",
+    _: Annotated[
+        bool, typer.Option("--list", callback=_tell_formats, is_eager=True, help="Tell the formats and end.")
+    ] = False,
+    project: ProjectFolder = HERE,
+) -> None:
+    """Write a finished platform's pose, or the points it maps, for a robot or a map."""
+    from linepose.errors import InputError
+    from linepose.exports import EXPORTS, export_options, export_platform
+    from linepose.project_folder import find_project, load_platform_project
+
+    if not format:
+        raise InputError("--format", "nothing", f"one of {', '.join(EXPORTS)}", f"linepose export {name} --format urdf")
+    root = find_project(project)
+    platform = load_platform_project(name, root).platforms[name]
+    if not (root / "results" / name / "pose.parquet").is_file():
+        raise InputError(str(root / "results" / name), "no result", "that of a run", f"linepose run {name}")
+    target = output or root / "results" / name / "exports"
+    if output is None:
+        target.mkdir(exist_ok=True)
+    options = export_options(parent_frame, child_frame, body_axes)
+    typer.echo(export_platform(root / "results", platform, name, format, target, stage, options))

@@ -1,0 +1,186 @@
+"""`linepose new NAME`: a commented platform file from options, or from answers to questions."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from linepose.cli.options import HERE
+
+_SOURCES = ("labelled_views", "scans")
+
+
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the platform: letters, digits, - and _.")],
+    focal_length_mm: Annotated[float | None, typer.Option(help="Focal length (mm).")] = None,
+    pixel_pitch_um: Annotated[float | None, typer.Option(help="Width of a pixel on the sensor (um).")] = None,
+    pixels: Annotated[int | None, typer.Option(min=2, help="Pixels of a scan line.")] = None,
+    principal_point_px: Annotated[
+        float | None, typer.Option(help="Where the optical axis meets the line (px).", show_default="the middle")
+    ] = None,
+    position_m: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(metavar="X Y Z", help="Camera in the body frame by tape: forward, right, down (m)."),
+    ] = None,
+    euler_deg: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(metavar="R P Y", help="Camera to body by eye: roll, pitch, yaw, zyx intrinsic (deg)."),
+    ] = None,
+    sigma_position_m: Annotated[float, typer.Option(help="How well the tape was read, one sigma (m).")] = 0.1,
+    sigma_euler_deg: Annotated[float, typer.Option(help="How well the angles are known, one sigma (deg).")] = 2.0,
+    source: Annotated[
+        Literal["labelled_views", "scans"] | None,
+        typer.Option(help="What was recorded: points with poses, one CSV file a view; or scans and a raw log."),
+    ] = None,
+    dataset: Annotated[
+        str | None, typer.Option(help="Folder of the platform's files below data/.", show_default="NAME")
+    ] = None,
+    navigation_format: Annotated[
+        str | None, typer.Option(help="Format of the navigation log, for scans.", show_default="CSV or Parquet table")
+    ] = None,
+    navigation: Annotated[str | None, typer.Option(help="File of the navigation log, for scans.")] = None,
+    description: Annotated[str | None, typer.Option(help="One line for people.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite a platform file of this name.")] = False,
+    project: Annotated[
+        Path, typer.Option("--project", "-p", metavar="FOLDER", help="The project's folder.", show_default="here")
+    ] = HERE,
+) -> None:
+    """Write a commented file for a platform of your own, and add it to config.yaml.
+
+    Asks for what the options leave out. In a folder without a project, a minimal one is made.
+    """
+    from linepose.config.new_platform import NewPlatform, check_name, write_platform
+
+    check_name(name)
+    needed = (focal_length_mm, pixel_pitch_um, pixels, position_m, euler_deg)
+    asks = any(value is None for value in needed)
+    root, platforms = _places(project)
+    if (platforms / f"{name}.yaml").exists() and not force:
+        _refuse(platforms / f"{name}.yaml")
+    focal_length_mm = _given(focal_length_mm, "--focal-length-mm", "Focal length (mm)", _number)
+    pixel_pitch_um = _given(pixel_pitch_um, "--pixel-pitch-um", "Pixel pitch (um)", _number)
+    pixels = _given(pixels, "--pixels", "Pixels of a scan line", _whole)
+    if asks and principal_point_px is None:
+        ask = "Principal point (px; the middle if not known)"
+        principal_point_px = _given(None, "--principal-point-px", ask, _number, (pixels - 1) / 2)
+    ask = "Camera in the body frame: forward right down (m), as in 0.2 0 -0.8"
+    position_m = _given(position_m, "--position-m", ask, _triple)
+    ask = "Camera to body: roll pitch yaw (deg), as in -56 0 -90"
+    euler_deg = _given(euler_deg, "--euler-deg", ask, _triple)
+    if asks and source is None:
+        ask = "Recorded: labelled_views (points with poses) or scans (images and a raw log)"
+        source = _given(None, "--source", ask, _source, "labelled_views")
+    if asks and dataset is None:
+        dataset = _given(None, "--dataset", "Folder of its files below data/", str, name)
+    if asks and source == "scans" and navigation_format is None:
+        ask = "Navigation log: table, or a format by name"
+        navigation_format = _given(None, "--navigation-format", ask, str, "table")
+    plain_table = navigation_format in {None, "", "table"}
+    path = write_platform(
+        platforms,
+        NewPlatform(
+            name=name,
+            focal_length_m=_scaled(focal_length_mm, 3),
+            pixel_pitch_m=_scaled(pixel_pitch_um, 6),
+            n_pixels=pixels,
+            position_m=position_m,
+            euler_deg=euler_deg,
+            principal_point_px=principal_point_px,
+            description=description or "",
+            sigma_position_m=sigma_position_m,
+            sigma_euler_deg=sigma_euler_deg,
+            source=source or "labelled_views",
+            dataset=dataset or name,
+            navigation_format="" if plain_table else navigation_format or "",
+            navigation=navigation or "",
+        ),
+        force,
+    )
+    typer.echo(f"wrote {path}")
+    _add_to_project(root, name)
+    typer.echo(f"next: put the platform's files in {root / 'data' / (dataset or name)}, then linepose check {name}")
+
+
+def _places(project: Path) -> tuple[Path, Path]:
+    """The project's folder, or where one will be made, and its folder of platform files."""
+    from linepose.config.platform import read_yaml
+    from linepose.errors import InputError
+    from linepose.project_folder import CONFIG, find_project
+
+    try:
+        root = find_project(project)
+    except InputError:
+        root = project.resolve()
+        return root, root / "config" / "platforms"
+    return root, root / str(read_yaml(root / CONFIG).get("platforms_folder", "config/platforms"))
+
+
+def _refuse(path: Path) -> None:
+    from linepose.errors import InputError
+
+    raise InputError(str(path), "a platform of this name", "a new name", "choose another, or give --force")
+
+
+def _add_to_project(root: Path, name: str) -> None:
+    from linepose.config.new_project import add_platform, make_project
+    from linepose.project_folder import CONFIG
+
+    if not (root / CONFIG).is_file():
+        typer.echo(f"wrote {make_project(root, name)}")
+    elif add_platform(root / CONFIG, name):
+        typer.echo(f"added {name} to the platforms of {root / CONFIG}")
+
+
+def _given(value: Any, option: str, question: str, kind: Callable[[str], Any], default: Any = None) -> Any:
+    """The option's value, or the answer to a question; a usage error that names the option where nobody answers."""
+    while value is None:
+        try:
+            answer = str(typer.prompt(question, default=default))
+        except typer.Abort:
+            typer.echo(err=True)
+            asked = question.partition(" (")[0].partition(":")[0].lower()
+            raise typer.BadParameter(f"no answer for {asked}: give it as {option}") from None
+        try:
+            value = kind(answer)
+        except ValueError as error:
+            typer.echo(f"{answer!r}: {error}; try again")
+    return value
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not value > 0 or math.isinf(value):
+        raise ValueError("expected a number above 0")
+    return value
+
+
+def _whole(text: str) -> int:
+    value = _number(text)
+    if value != int(value) or value < 2:
+        raise ValueError("expected a whole number from 2")
+    return int(value)
+
+
+def _triple(text: str) -> tuple[float, float, float]:
+    """Three numbers between spaces or commas."""
+    try:
+        first, second, third = (float(part) for part in text.strip("[]()").replace(",", " ").split())
+    except ValueError:
+        raise ValueError("expected three numbers") from None
+    return first, second, third
+
+
+def _source(text: str) -> str:
+    if text not in _SOURCES:
+        raise ValueError(f"expected one of {', '.join(_SOURCES)}")
+    return text
+
+
+def _scaled(value: float, power: int) -> float:
+    """The value over ten to this power, with no digit that the person did not give."""
+    return float(f"{value:.15g}e-{power}")

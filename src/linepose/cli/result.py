@@ -1,0 +1,75 @@
+"""A platform's result for the eye: tables in a terminal, lines elsewhere."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from rich.box import SIMPLE
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from linepose.report.pose_tables import PoseNumber
+from linepose.report.summary import PlatformSummary
+from linepose.report.verdict import Level
+
+_STYLES: Final = {Level.GOOD: "bold green", Level.CARE: "bold yellow", Level.BAD: "bold red"}
+_WORDS: Final = {Level.GOOD: "ok", Level.CARE: "care", Level.BAD: "bad"}
+_HEADINGS: Final = ("", "estimate", "sigma", "by hand", "difference", "in sigmas")
+
+
+def tables(summary: PlatformSummary, removed: Sequence[int]) -> list[RenderableType]:
+    """Verdict, pose and reasons as tables."""
+    pose = Table(title="camera in the body frame, camera to body", title_justify="left", box=SIMPLE)
+    for heading in _HEADINGS:
+        pose.add_column(heading, justify="right" if heading else "left")
+    for number in _numbers(summary):
+        pose.add_row(*_cells(number))
+    reasons = Table(title="why", title_justify="left", box=SIMPLE)
+    for heading in ("", "check", "found, and what to do"):
+        reasons.add_column(heading, no_wrap=heading != "found, and what to do")
+    for check in summary.verdict.checks:
+        told = Text(check.found)
+        if check.advice:
+            told.append(f"\n→ {check.advice}", style="bold")
+        reasons.add_row(Text(_WORDS[check.level], style=_STYLES[check.level]), check.name, told)
+    head = Text(f"{summary.description}\n{summary.verdict.sentence}", style=_STYLES[summary.verdict.level])
+    return [head, pose, Text(_about(summary, removed)), reasons]
+
+
+def plain_lines(summary: PlatformSummary, removed: Sequence[int]) -> list[str]:
+    """The same as lines that a program or a log can take."""
+    lines = [summary.description, summary.verdict.sentence]
+    lines.append(f"{_HEADINGS[0]:16s}" + "".join(f"{heading:>14s}" for heading in _HEADINGS[1:]))
+    for number in _numbers(summary):
+        name, *cells = _cells(number)
+        lines.append(f"{name:16s}" + "".join(f"{cell:>14s}" for cell in cells))
+    lines.append(_about(summary, removed))
+    for check in summary.verdict.checks:
+        lines.append(f"{_WORDS[check.level]:6s}{check.name}: {check.found}")
+        if check.advice:
+            lines.append(f"      -> {check.advice}")
+    return lines
+
+
+def _numbers(summary: PlatformSummary) -> list[PoseNumber]:
+    return [*summary.rotation_vector, *summary.euler]
+
+
+def _cells(number: PoseNumber) -> tuple[str, ...]:
+    unit = {"°": "deg"}.get(number.unit, number.unit)
+    digits = 2 if unit == "deg" else 4
+    told = (number.estimate, number.sigma, number.hand, number.difference)
+    return (
+        number.name,
+        *(f"{round(value, digits) + 0.0:.{digits}f} {unit}" for value in told),
+        f"{round(number.difference_sigmas, 1) + 0.0:+.1f}",
+    )
+
+
+def _about(summary: PlatformSummary, removed: Sequence[int]) -> str:
+    quaternion = ", ".join(f"{value:.6f}" for value in summary.quaternion)
+    without = f" (removed: {', '.join(map(str, removed))})" if removed else ""
+    return (
+        f"quaternion w, x, y, z: {quaternion}; {summary.n_accepted} of {summary.n_observations} observations accepted"
+        f"{without}, -log L {summary.neg_log_likelihood:.3f}, noise model {summary.noise_model}"
+    )

@@ -1,0 +1,36 @@
+"""`linepose show NAME`: the result in the terminal."""
+
+import typer
+
+from linepose.cli.options import HERE, Name, ProjectFolder
+
+
+def show(name: Name, project: ProjectFolder = HERE) -> None:
+    """Tell a platform's pose: position, rotation vector, Euler angles, sigmas, and whether to trust it and why."""
+    from rich.console import Console
+
+    from linepose.cli.result import plain_lines, tables
+    from linepose.errors import InputError
+    from linepose.figures.results import PlatformResults
+    from linepose.outliers import removal_order
+    from linepose.project_folder import find_project, load_platform_project
+    from linepose.report.summary import summarise
+    from linepose.result_schemas import OUTLIERS
+
+    root = find_project(project)
+    loaded = load_platform_project(name, root)
+    folder = root / "results" / name
+    if not (folder / "pose.parquet").is_file():
+        raise InputError(str(folder), "no result", "that of a run", f"linepose run {name}")
+    results = PlatformResults(name, loaded.platforms[name], folder, loaded.study.outliers.threshold_px)
+    summary = summarise(results)
+    removed = removal_order(results.table("outliers", OUTLIERS))
+    console = Console()
+    if console.is_terminal:
+        for part in tables(summary, removed):
+            console.print(part)
+    else:
+        for line in plain_lines(summary, removed):
+            typer.echo(line)
+    typer.echo(f"tables {folder}/*.parquet, figures {folder / 'figures'}, report {root / 'results' / 'report.html'}")
+    typer.echo(f"take it away: linepose export {name} --format urdf")

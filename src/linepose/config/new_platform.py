@@ -1,0 +1,184 @@
+"""A new platform's file, written for a person to read on: every key with its unit, values from data sheet and tape."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+import yaml
+
+from linepose.config.platform import CameraSection, HandMeasuredSection, NavigationSection, Platform, SigmasSection
+from linepose.config.schema import validated
+from linepose.errors import InputError
+from linepose.storage import whole_file
+
+Triple = tuple[float, float, float]
+_NAME: Final = re.compile(r"[A-Za-z0-9_-]+")
+
+
+@dataclass(frozen=True)
+class NewPlatform:
+    """What a person knows of a new platform; units in the names, as in the platform file.
+
+    `navigation` is a file (CSV, Parquet) or, with `navigation_format`, a log in that format; for scans only.
+    """
+
+    name: str
+    focal_length_m: float
+    pixel_pitch_m: float
+    n_pixels: int
+    position_m: Triple
+    euler_deg: Triple
+    principal_point_px: float | None = None
+    description: str = ""
+    sigma_position_m: float = 0.1
+    sigma_euler_deg: float = 2.0
+    source: Literal["labelled_views", "scans"] = "labelled_views"
+    dataset: str = ""
+    navigation_format: str = ""
+    navigation: str = ""
+
+
+def check_name(name: str) -> str:
+    """The name of a platform; raises InputError for one that no file or rule can have."""
+    if not _NAME.fullmatch(name):
+        raise InputError("platform's name", repr(name), "letters, digits, - and _", "choose such a name")
+    return name
+
+
+def platform_text(new: NewPlatform) -> str:
+    """The platform file as YAML, each key commented; raises InputError for values that no platform has."""
+    text = "\n".join(
+        [*_head(new), *_camera(new), "", *_hand(new), "", *_navigation(new), "", *_source(new), "", *_experiments(), ""]
+    )
+    validated(Platform, yaml.safe_load(text), f"{new.name}.yaml")
+    return text
+
+
+def write_platform(folder: Path, new: NewPlatform, overwrite: bool = False) -> Path:
+    """Write config/platforms/NAME.yaml, whole or not at all; raises InputError where it is there already."""
+    path = folder / f"{check_name(new.name)}.yaml"
+    if path.exists() and not overwrite:
+        raise InputError(str(path), "a platform of this name", "a new name", "choose another, or give --force")
+    text = platform_text(new)
+    with whole_file(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return path
+
+
+def _head(new: NewPlatform) -> list[str]:
+    return [
+        f"# {new.name}. Every key, its unit and default: docs/configuration.md",
+        f"# After a change of this file: linepose check {new.name}",
+        "",
+        f"description: {_quoted(new.description or new.name)}",
+        "",
+    ]
+
+
+def _camera(new: NewPlatform) -> list[str]:
+    middle = (new.n_pixels - 1) / 2
+    principal = middle if new.principal_point_px is None else new.principal_point_px
+    about, sigma = _descriptions(CameraSection), _descriptions(SigmasSection)
+    default = SigmasSection()
+    return [
+        "camera: # from the data sheet, better from a calibration of the lens",
+        f"  focal_length_m: {_number(new.focal_length_m)} # {about['focal_length_m']}",
+        f"  pixel_pitch_m: {_number(new.pixel_pitch_m)} # {about['pixel_pitch_m']}",
+        f"  n_pixels: {new.n_pixels} # {about['n_pixels']}",
+        f"  principal_point_px: {_number(principal)} # {about['principal_point_px']}",
+        f"  k1: 0.0 # {about['k1']}",
+        f"  k2: 0.0 # {about['k2']}",
+        f"  sigmas: # {about['sigmas']}",
+        *(f"    {key}: {_number(value)} # {sigma[key]}" for key, value in default.model_dump().items()),
+    ]
+
+
+def _hand(new: NewPlatform) -> list[str]:
+    about = _descriptions(HandMeasuredSection)
+    return [
+        "hand_measured: # the start; body x forward, y right, z down; camera x along the scan line, z the optical axis",
+        f"  position_m: {_triple(new.position_m)} # {about['position_m']}",
+        f"  euler_deg: {_triple(new.euler_deg)} # {about['euler_deg']}",
+        f"  sigma_position_m: {_number(new.sigma_position_m)} # {about['sigma_position_m']}",
+        f"  sigma_euler_deg: {_number(new.sigma_euler_deg)} # {about['sigma_euler_deg']}",
+    ]
+
+
+def _navigation(new: NewPlatform) -> list[str]:
+    about, default = _descriptions(NavigationSection), NavigationSection()
+    lines = [
+        "navigation:",
+        f"  covariance_columns: {list(default.covariance_columns)} # {about['covariance_columns']}",
+        f"  maximum_gap_s: {_number(default.maximum_gap_s)} # {about['maximum_gap_s']}",
+    ]
+    if new.source == "scans":
+        lines += [
+            f"  association: interpolate # {about['association']}",
+            f"  maximum_pose_gap_s: {_number(default.maximum_pose_gap_s)} # {about['maximum_pose_gap_s']}",
+        ]
+    return lines
+
+
+def _source(new: NewPlatform) -> list[str]:
+    lines = [
+        "source:",
+        f"  kind: {new.source}",
+        f"  dataset: {_quoted(new.dataset or new.name)} # folder below one of data_folders (config.yaml)",
+    ]
+    if new.source == "labelled_views":
+        return [
+            *lines,
+            "  views: labelled_points/*.csv # one file a view, no heading, sorted by name; rows of",
+            "  # time (us), point, u (px), north, east, down (m), roll, pitch, yaw (rad)",
+            "  covariances: nav_covs.csv # rows of time (us) and the row-major 12x12 covariance",
+        ]
+    lines += [
+        "  scans: scans/*.hdr # one a view, sorted by name: ENVI (.hdr), .png, .tif, with NAME-times.csv",
+        "  points: labels # or detection: the dots are found without labels",
+        "  labels: labels.csv # observation, point, u_px, line: make it with linepose label",
+    ]
+    if not new.navigation_format:
+        log = new.navigation or "navigation.csv"
+        lines.append(f"  navigation: {_quoted(log)} # time_us, north_m, east_m, down_m, roll_rad, pitch_rad, yaw_rad")
+    else:
+        lines += [
+            "  navigation: # further keys of each format: docs/configuration.md",
+            f"    format: {new.navigation_format}",
+            f"    file: {_quoted(new.navigation or 'navigation.*')} # below the data set's folder",
+        ]
+    if new.navigation_format in {"", "csv", "table"}:
+        lines.append("  covariances: covariances.csv # rows of time (us) and the row-major 12x12 covariance")
+    return lines
+
+
+def _experiments() -> list[str]:
+    return [
+        "experiments: # what else is worked out from the accepted observations; null leaves one out",
+        "  basin: null # how wrong the hand measurement may be: takes minutes to hours; remove this line to run it",
+    ]
+
+
+def _descriptions(section: type) -> Mapping[str, str]:
+    """What each key of a section means, as a comment's words."""
+    fields = section.model_fields  # type: ignore[attr-defined]
+    return {name: (field.description or "").rstrip(".") for name, field in fields.items()}
+
+
+def _number(value: float) -> str:
+    """A number that every YAML reader takes for one: with a point also before an exponent."""
+    text = repr(float(value))
+    mantissa, exponent, power = text.partition("e")
+    return text if "." in mantissa else f"{mantissa}.0{exponent}{power}"
+
+
+def _triple(values: Triple) -> str:
+    return f"[{', '.join(_number(value) for value in values)}]"
+
+
+def _quoted(text: str) -> str:
+    """A text as YAML, in quotes where it needs them."""
+    return (
+        yaml.safe_dump(text, default_flow_style=True, width=10_000).removesuffix("\n").removesuffix("...").rstrip("\n")
+    )

@@ -1,0 +1,204 @@
+"""The camera's clock against the navigation's: one parameter more, estimated with the pose.
+
+An offset moves a view along its path as a forward lever arm does, and turns it as a pitch may: only passes of different
+direction or speed tell them apart. So the estimate comes with its correlations, and with the words to go by.
+"""
+
+import logging
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from linepose.distance import mahalanobis_distance
+from linepose.errors import EstimationError
+from linepose.experiments.estimate import observation_list
+from linepose.experiments.jackknife import jackknife_sigma
+from linepose.identifiability import TURN_NAMES, in_body_axes
+from linepose.likelihood.clock_offset import ClockOffsetLikelihood
+from linepose.optimise import Search, laplace_covariance, optimise
+from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.rotations import Floats
+from linepose.sampling import SamplingSettings, sample
+from linepose.stages import sample_table
+
+_logger = logging.getLogger(__name__)
+
+CORRELATION_COLUMNS: Final = tuple(f"correlation_{name.rsplit('_', 1)[0]}" for name in (*POSE_COLUMNS, *TURN_NAMES))
+TOLD_APART: Final = 0.75  # of the shrinkage: the sigma is half of what it was before any data
+MOST_COMMON: Final = 0.98  # correlation with the whole pose, where a sigma is five times what it is with the pose known
+LINKED: Final = 0.9  # correlation with the pose, from which it is the pose that hides the offset, and not the noise
+NOTABLE: Final = 3.0  # sigmas from zero
+_INSIDE: Final = 0.75  # of the largest offset, five times the walkers' scatter from it
+_LARGEST: Final = 0.9  # of the largest offset, where the search has run into its end
+_WORDS: Final = {
+    "r_x": "forward lever arm",
+    "r_y": "sideways lever arm",
+    "r_z": "height",
+    "roll": "roll",
+    "pitch": "pitch",
+    "yaw": "yaw",
+}
+
+
+@dataclass(frozen=True)
+class Without:
+    """The estimate with clocks taken to agree: pose (6,), its covariance (6, 6), and -log L there."""
+
+    pose: Floats
+    covariance: Floats
+    neg_log_likelihood: float
+
+
+def estimate_clock_offset(
+    likelihood: ClockOffsetLikelihood,
+    without: Without,
+    start: ArrayLike,
+    seed: int,
+    search: Search | None = None,
+    settings: SamplingSettings | None = None,
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The offset and the pose together from a start pose (6,): a table of one row, and the samples behind its sigmas.
+
+    `correlation_pose` is that of the curvature, which no limit of the offset hides; 1 where the curvature leaves a
+    direction open. The offset's sigma is the larger of the samples' and of leaving out observations. Columns as in
+    `experiment_schemas.CLOCK_OFFSET`; a sigma from the curvature is NaN where the data leave a direction open.
+    """
+    optimum = optimise(likelihood, start, search)
+    laplace_sigma, view_sigma, with_pose = float("nan"), float("nan"), 1.0
+    try:
+        curvature = laplace_covariance(likelihood, optimum.parameters)
+        laplace_sigma, with_pose = float(np.sqrt(curvature[-1, -1])), correlation_with_all(curvature)
+        view_sigma = float(jackknife_sigma(likelihood, optimum.parameters, curvature)[-1])
+    except EstimationError:
+        _logger.info("the data leave the clock offset or the pose open at the optimum: no sigma from the curvature")
+    middle = optimum.parameters.copy()  # of the walkers, none of which may start beyond the largest offset
+    middle[-1] = np.clip(middle[-1], -_INSIDE * likelihood.maximum_s, _INSIDE * likelihood.maximum_s)
+    chain = sample(likelihood, middle, seed, settings)
+    names, covariance = likelihood.parameter_names, chain.covariance()
+    offset_s, sampled_sigma_s = float(optimum.parameters[-1]), float(chain.sigma()[-1])
+    sigma_s = float(np.nanmax([sampled_sigma_s, view_sigma]))
+    correlation = correlations(optimum.parameters, covariance, names)
+    shrinkage = 1 - sigma_s**2 / (likelihood.maximum_s**2 / 3)
+    pose = optimum.parameters[:N_PARAMETERS]
+    moved = float(mahalanobis_distance(pose, without.pose, without.covariance))
+    told = Told(offset_s, sigma_s, likelihood.maximum_s, shrinkage, with_pose, correlation, moved)
+    row = {
+        "n_observations": likelihood.survey.n_observations,
+        "observations": observation_list(likelihood.survey.number),
+        "offset_s": offset_s,
+        "sigma_s": sigma_s,
+        "sampled_sigma_s": sampled_sigma_s,
+        "laplace_sigma_s": laplace_sigma,
+        "jackknife_sigma_s": view_sigma,
+        "maximum_s": likelihood.maximum_s,
+        "shrinkage": shrinkage,
+        "correlation_pose": with_pose,
+        **correlation,
+        **_pose("", pose, np.sqrt(np.diag(covariance)[:N_PARAMETERS]), optimum.neg_log_likelihood),
+        **_pose("_without", without.pose, np.sqrt(np.diag(without.covariance)), without.neg_log_likelihood),
+        "mahalanobis": moved,
+        "told_apart": told.is_told_apart(),
+        "verdict": told.verdict(),
+        "advice": told.advice(),
+    }
+    return pd.DataFrame([row]), sample_table(chain, names)
+
+
+def correlations(parameters: ArrayLike, covariance: ArrayLike, names: tuple[str, ...]) -> dict[str, float]:
+    """Correlation of the last parameter with each of the pose's, and with its turns about the body's axes."""
+    _, turned = in_body_axes(names, parameters, covariance)
+    found = []
+    for matrix in (np.asarray(covariance, dtype=float), turned):
+        sigma = np.sqrt(np.diag(matrix))
+        found.append(matrix[-1] / sigma / sigma[-1])
+    values = [*found[0][:N_PARAMETERS], *found[1][3:N_PARAMETERS]]
+    return dict(zip(CORRELATION_COLUMNS, map(float, values), strict=True))
+
+
+def correlation_with_all(covariance: ArrayLike) -> float:
+    """Correlation, 0 to 1, of the last parameter with the best linear combination of all others."""
+    matrix = np.asarray(covariance, dtype=float)
+    sigma = np.sqrt(np.diag(matrix))
+    inverse = np.linalg.pinv(matrix / np.outer(sigma, sigma), hermitian=True)
+    return float(np.sqrt(np.clip(1 - 1 / inverse[-1, -1], 0.0, 1.0)))
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is known of the offset, and how to say it."""
+
+    offset_s: float
+    sigma_s: float
+    maximum_s: float
+    shrinkage: float
+    correlation_pose: float
+    correlation: dict[str, float]
+    mahalanobis: float
+
+    def is_told_apart(self) -> bool:
+        """Whether the data tell the offset from the pose."""
+        inside = abs(self.offset_s) < _LARGEST * self.maximum_s
+        return self.shrinkage >= TOLD_APART and self.correlation_pose < MOST_COMMON and inside
+
+    def verdict(self) -> str:
+        """One or two sentences: what the offset is, or why it is not known."""
+        found = f"{1e3 * self.offset_s:.1f} ± {1e3 * self.sigma_s:.1f} ms"
+        if not self.is_told_apart():
+            if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= TOLD_APART:
+                return f"The clock offset is at the end of its range: {found} of ±{1e3 * self.maximum_s:g} ms."
+            if self.correlation_pose < LINKED:
+                return (
+                    f"The data do not tell the clock offset: {found}, where ±{1e3 * self.maximum_s:g} ms were allowed."
+                )
+            return (
+                f"The clock offset cannot be told from the pose: {found}, where ±{1e3 * self.maximum_s:g} ms were "
+                f"allowed; it goes with the {self._partner()}, correlation {self._correlation():+.2f}."
+            )
+        if abs(self.offset_s) < NOTABLE * self.sigma_s:
+            return f"No clock offset shows: {found} is less than {NOTABLE:g} sigmas."
+        which = "behind" if self.offset_s > 0 else "ahead of"
+        return (
+            f"The camera's clock is {which} the navigation's: the offset is {found}. With it the pose moves by "
+            f"{self.mahalanobis:.1f} sigmas."
+        )
+
+    def advice(self) -> str:
+        """What to do; empty where there is nothing to do."""
+        if not self.is_told_apart():
+            if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= TOLD_APART:
+                return "Raise experiments.clock_offset.maximum_s, and check in which time scale each clock runs."
+            if self.correlation_pose < LINKED:
+                return (
+                    "Take the pose without the offset. Faster passes, more of them, or better navigation would tell it."
+                )
+            return (
+                "Take the pose without the offset, and add passes in the other direction and at other speeds: they "
+                "move the view the other way for the same offset."
+            )
+        if abs(self.offset_s) < NOTABLE * self.sigma_s:
+            return ""
+        verb = "Add" if self.offset_s > 0 else "Subtract"
+        shift = abs(round(1e6 * self.offset_s))
+        preposition = "to" if self.offset_s > 0 else "from"
+        return f"{verb} {shift} us {preposition} the camera's time stamps and run again, or mend its clock."
+
+    def _strongest(self) -> str:
+        named = [f"correlation_{name}" for name in _WORDS]
+        return max(named, key=lambda name: abs(self.correlation[name]))
+
+    def _partner(self) -> str:
+        return _WORDS[self._strongest().removeprefix("correlation_")]
+
+    def _correlation(self) -> float:
+        return self.correlation[self._strongest()]
+
+
+def _pose(suffix: str, pose: Floats, sigma: Floats, neg_log_likelihood: float) -> dict[str, float]:
+    columns = [f"{name}{suffix}" for name in (*POSE_COLUMNS, *SIGMA_COLUMNS)]
+    return {
+        **dict(zip(columns, map(float, (*pose, *sigma)), strict=True)),
+        f"neg_log_likelihood{suffix}": neg_log_likelihood,
+    }

@@ -1,0 +1,195 @@
+"""The pose under each noise model, from several sets of observations: what the choice of the model changes.
+
+Beside each pose stand the levels that the model infers, and how far the estimate lies from the recommended one: that of
+the shared-error model from the accepted observations. Beside both, what the data say of each parameter of that model.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from linepose.camera import Camera
+from linepose.diagnostics import ChainDiagnostics, diagnose_samples
+from linepose.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
+from linepose.errors import InputError
+from linepose.experiments.estimate import observation_list
+from linepose.identifiability import identifiability, in_body_axes, in_words
+from linepose.likelihood.base import Likelihood
+from linepose.likelihood.models import likelihood_of
+from linepose.likelihood.names import ROBUST, SHARED
+from linepose.likelihood.robust import RobustSharedLikelihood
+from linepose.likelihood.shared import LEVEL_NAMES, SHARED_PARAMETERS, SharedLikelihood
+from linepose.observations import Survey
+from linepose.optimise import Optimum, Search, optimise
+from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.rotations import Floats
+from linepose.sampling import Chain, IndependenceSettings, SamplingSettings, sample, section_of, stage_seed
+
+ALL, INLIERS = "all", "inliers"
+EXTRA_PARAMETERS: Final = SHARED_PARAMETERS[N_PARAMETERS:]
+LEVELS: Final = tuple(name.removeprefix("log_") for name in LEVEL_NAMES)
+_QUANTILES: Final = {"": 0.5, "_low": 0.16, "_high": 0.84}
+LEVEL_COLUMNS: Final = tuple(f"{level}{end}" for level in LEVELS for end in _QUANTILES)
+
+Settings = SamplingSettings | IndependenceSettings
+
+
+@dataclass(frozen=True)
+class Fit:
+    """One noise model fitted to one set of observations, by name: the optimum, the samples and how good they are."""
+
+    noise_model: str
+    set: str
+    likelihood: Likelihood
+    optimum: Optimum
+    chain: Chain
+    diagnostics: ChainDiagnostics
+
+    @property
+    def pose(self) -> Floats:
+        """The optimum's pose (6,)."""
+        return self.optimum.parameters[:N_PARAMETERS]
+
+    def pose_covariance(self) -> Floats:
+        """Covariance (6, 6) of the sampled poses."""
+        return self.chain.covariance()[:N_PARAMETERS, :N_PARAMETERS]
+
+
+def fit_noise_models(
+    sets: Mapping[str, Survey],
+    camera: Camera,
+    settings: Mapping[str, Settings],
+    start: ArrayLike,
+    seed: int,
+    search: Search | None = None,
+) -> Iterator[Fit]:
+    """Each noise model of `settings`, by name with its sampling, fitted to each set, from a start pose (6,)."""
+    for place, (name, survey) in enumerate(sets.items()):
+        for noise_model, how in settings.items():
+            likelihood = likelihood_of(noise_model, survey, camera)
+            optimum = optimise(likelihood, start, search)
+            chain = sample(likelihood, optimum.parameters, stage_seed(seed, place), how)
+            yield Fit(
+                noise_model, name, likelihood, optimum, chain, diagnose_samples(chain.parameters, section_of(how))
+            )
+
+
+def chosen(fits: list[Fit], noise_model: str, name: str) -> Fit:
+    """The fit of a model to a set; raises InputError where there is none."""
+    for fit in fits:
+        if (fit.noise_model, fit.set) == (noise_model, name):
+            return fit
+    raise InputError("experiments.noise_models.models", f"no {noise_model}", "it among the models", "add it")
+
+
+def noise_model_table(fits: list[Fit], true_pose: ArrayLike | None = None) -> pd.DataFrame:
+    """One row a fit: pose, sampled sigmas, levels, the chain's worst diagnostics, and how far it is from two others.
+
+    The two are the shared-error estimate of the accepted observations, and the true pose (6,) where it is known, in
+    sigmas of the fit itself. Columns as in `experiment_schemas.NOISE_MODELS`.
+    """
+    reference = chosen(fits, SHARED, INLIERS)
+    covariance = reference.pose_covariance()
+    return pd.DataFrame(
+        [
+            {
+                **_estimate_columns(fit),
+                **_level_columns(fit),
+                "distance_m": float(euclidean_distance_m(fit.pose, reference.pose)),
+                "angle_rad": float(geodesic_angle_rad(fit.pose, reference.pose)),
+                "mahalanobis": float(mahalanobis_distance(fit.pose, reference.pose, covariance)),
+                **_error_columns(fit, true_pose),
+            }
+            for fit in fits
+        ]
+    )
+
+
+def _estimate_columns(fit: Fit) -> dict[str, object]:
+    names = fit.likelihood.parameter_names
+    values = dict(zip(names, fit.optimum.parameters, strict=True))
+    return {
+        "noise_model": fit.noise_model,
+        "set": fit.set,
+        "n_observations": fit.likelihood.survey.n_observations,
+        "observations": observation_list(fit.likelihood.survey.number),
+        **{name: values[name] for name in POSE_COLUMNS},
+        **dict(zip(SIGMA_COLUMNS, fit.chain.sigma()[:N_PARAMETERS], strict=True)),
+        **{name: values.get(name, np.nan) for name in EXTRA_PARAMETERS},
+        "neg_log_likelihood": fit.optimum.neg_log_likelihood,
+        "n_evaluations": fit.optimum.n_evaluations,
+        "effective_sample_size": float(fit.diagnostics.effective_sample_size.min()),
+        "split_r_hat": float(fit.diagnostics.split_r_hat.max()),
+        "warning": fit.diagnostics.warning,
+    }
+
+
+def _level_columns(fit: Fit) -> dict[str, float]:
+    """Median and central 68 % interval of each level, NaN where the model has none."""
+    if fit.likelihood.n_parameters == N_PARAMETERS:
+        return dict.fromkeys(LEVEL_COLUMNS, np.nan)
+    samples, names = fit.chain.flat(), fit.likelihood.parameter_names
+    columns = [names.index(name) for name in LEVEL_NAMES]
+    values = np.exp(np.quantile(samples[:, columns], list(_QUANTILES.values()), axis=0)).T
+    return dict(zip(LEVEL_COLUMNS, values.ravel(), strict=True))
+
+
+def _error_columns(fit: Fit, true_pose: ArrayLike | None) -> dict[str, float]:
+    if true_pose is None:
+        return dict.fromkeys(("position_error_m", "rotation_error_rad", "error_in_sigmas"), np.nan)
+    return {
+        "position_error_m": float(euclidean_distance_m(fit.pose, true_pose)),
+        "rotation_error_rad": float(geodesic_angle_rad(fit.pose, true_pose)),
+        "error_in_sigmas": float(mahalanobis_distance(true_pose, fit.pose, fit.pose_covariance())),
+    }
+
+
+def identifiability_table(fits: list[Fit], hand_pose: ArrayLike, hand_covariance: ArrayLike) -> pd.DataFrame:
+    """One row a parameter of the shared-error model, from the accepted observations: prior against posterior.
+
+    Rotations are turns about the body's axes. The hand measurement, a pose (6,) with covariance (6, 6), stands for the
+    pose's prior, which takes no part in the estimate. Columns as in `experiment_schemas.IDENTIFIABILITY`.
+    """
+    fit = chosen(fits, SHARED, INLIERS)
+    likelihood = fit.likelihood
+    assert isinstance(likelihood, SharedLikelihood)
+    names, posterior = in_body_axes(likelihood.parameter_names, fit.optimum.parameters, fit.chain.covariance())
+    _, hand = in_body_axes(likelihood.parameter_names[:N_PARAMETERS], hand_pose, hand_covariance)
+    prior = np.concatenate([np.sqrt(np.diag(hand)), likelihood.prior_sigma[N_PARAMETERS:]])
+    found = identifiability(names, posterior, prior)
+    return pd.DataFrame(
+        {
+            "parameter": names,
+            "prior_sigma": found.prior_sigma,
+            "posterior_sigma": found.posterior_sigma,
+            "shrinkage": found.shrinkage,
+            "weakest_direction": found.weakest_direction,
+            "weakest_shrinkage": found.weakest_shrinkage,
+            "weakest_in_words": in_words(names, found.weakest_direction),
+        }
+    )
+
+
+def weights_table(fits: list[Fit], accepted: ArrayLike) -> pd.DataFrame:
+    """One row an observed point: its weight and its view's under the robust model of all observations.
+
+    `removed` says whether the outlier removal took the observation out. Columns as in `experiment_schemas.WEIGHTS`.
+    """
+    fit = chosen(fits, ROBUST, ALL)
+    likelihood = fit.likelihood
+    assert isinstance(likelihood, RobustSharedLikelihood)
+    weights, survey = likelihood.weights(fit.optimum.parameters), likelihood.survey
+    row, point = np.nonzero(np.isfinite(weights.point))
+    return pd.DataFrame(
+        {
+            "observation": survey.number[row],
+            "point": point.astype(np.int64),
+            "view_weight": weights.view[row],
+            "point_weight": weights.point[row, point],
+            "removed": ~np.isin(survey.number[row], np.asarray(accepted)),
+        }
+    )

@@ -1,0 +1,1 @@
+"""What devices and other programs write, read into what the rest of the library works with."""

@@ -1,0 +1,33 @@
+"""A project on disk: the folder that holds config/config.yaml, found from anywhere below it."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+from linepose.config.platform import read_yaml
+from linepose.config.project import Project, load_project
+from linepose.config.study import DatasetSection
+from linepose.errors import InputError
+
+CONFIG: Final = Path("config") / "config.yaml"
+
+
+def find_project(start: Path | str = ".") -> Path:
+    """The nearest folder from `start` upwards with a config/config.yaml; raises InputError where there is none."""
+    here = Path(start).resolve()
+    for folder in (here, *here.parents):
+        if (folder / CONFIG).is_file():
+            return folder
+    remedy = "go to the project's folder, or make one here with `linepose new NAME`"
+    raise InputError(str(here), f"no {CONFIG.as_posix()} here or above", "a linepose project", remedy)
+
+
+def load_platform_project(
+    name: str, root: Path, can_download: Callable[[DatasetSection], bool] = lambda _: True
+) -> Project:
+    """The project in a folder as if this platform were its only one; raises InputError.
+
+    Relative data folders are taken from `root`.
+    """
+    values = read_yaml(root / CONFIG)
+    return load_project(values | {"platforms": [name]}, root, can_download)

@@ -1,0 +1,20 @@
+"""A platform's part of the page from its folder of results."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from linepose.figures.results import PlatformResults
+from linepose.report.made_with import settings_text
+from linepose.report.page import PlatformOnPage, figures_on_page
+from linepose.report.platform_sections import platform_sections
+from linepose.report.summary import summarise
+from linepose.result_schemas import FIGURES
+from linepose.storage import read_table
+
+
+def platform_on_page(results: PlatformResults, settings: Mapping[str, Any]) -> PlatformOnPage:
+    """Summary, sections and drawn figures of a platform, with the settings of its file."""
+    folder = results.folder / "figures"
+    index = read_table(folder / "index.parquet", FIGURES)
+    figures = figures_on_page(results.name, folder, index)
+    return PlatformOnPage(summarise(results), platform_sections(results), figures, settings_text(settings))

@@ -1,0 +1,266 @@
+"""Each command as a user gives it: what it prints, what it writes, how it ends; faults are one line."""
+
+import io
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+from linepose.cli import run as run_command
+from linepose.cli.app import app
+from linepose.config.platform import load_platform
+
+from .. import made_up
+from ..recorded_files import write_platform_files
+
+GIVEN = [
+    *("--focal-length-mm", "8.2", "--pixel-pitch-um", "7.407407", "--pixels", "648"),
+    *("--position-m", "0.2", "0", "-0.8", "--euler-deg", "-56", "0", "-90"),
+]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """An empty folder that commands run in."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def given(*arguments, answers=None):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments], input=answers)
+
+
+def one_line(result) -> str:
+    """The only line of a fault."""
+    (line,) = result.stderr.strip().splitlines()
+    assert line.startswith("linepose: ")
+    assert "Traceback" not in result.output
+    return line
+
+
+def test_help_names_every_command_in_the_order_of_use():
+    told = given("--help").stdout
+    places = [told.index(f"│ {name} ") for name in ("new", "label", "check", "run", "show", "export")]
+    assert places == sorted(places)
+
+
+@pytest.mark.parametrize("command", ["new", "label", "check", "run", "show", "export"])
+def test_every_command_has_help(command):
+    result = given(command, "--help")
+    assert result.exit_code == 0
+    assert "--project" in result.stdout
+
+
+def test_new_makes_a_project_and_a_platform_that_can_be_read(here):
+    result = given("new", "mine", *GIVEN)
+    assert result.exit_code == 0, result.output
+    platform = load_platform(here / "config" / "platforms", "mine")
+    assert platform.camera.focal_length_m == 8.2e-3
+    assert platform.camera.pixel_pitch_m == 7.407407e-6
+    assert platform.camera.principal_point_px == 323.5
+    assert platform.hand_measured.euler_deg == (-56.0, 0.0, -90.0)
+    assert platform.source.dataset == "mine"
+    assert yaml.safe_load((here / "config" / "config.yaml").read_text())["platforms"] == ["mine"]
+    assert "linepose check mine" in result.stdout
+
+
+def test_new_asks_for_what_is_not_given_until_it_fits(here):
+    answers = "8.2\nseven\n7.4\n648\n\n0.2 0\n0.2, 0, -0.8\n-56 0 -90\nscan\nscans\n\ntable\n"
+    result = given("new", "mine", answers=answers)
+    assert result.exit_code == 0, result.output
+    assert "'seven': expected a number above 0; try again" in result.stdout
+    assert "'0.2 0': expected three numbers; try again" in result.stdout
+    assert "'scan': expected one of labelled_views, scans; try again" in result.stdout
+    platform = load_platform(here / "config" / "platforms", "mine")
+    assert platform.source.kind == "scans"
+    assert platform.hand_measured.position_m == (0.2, 0.0, -0.8)
+
+
+def test_new_without_an_answer_names_the_option(here):
+    result = given("new", "mine", "--focal-length-mm", "8.2", answers="")
+    assert result.exit_code == 2
+    assert "--pixel-pitch-um" in result.stderr
+    assert not (here / "config").exists()
+
+
+def test_new_overwrites_only_by_force(here):
+    given("new", "mine", *GIVEN)
+    path = here / "config" / "platforms" / "mine.yaml"
+    path.write_text("kept: true\n")
+    refused = given("new", "mine", *GIVEN)
+    assert refused.exit_code == 1
+    assert "--force" in one_line(refused)
+    assert path.read_text() == "kept: true\n"
+    assert given("new", "mine", *GIVEN, "--force").exit_code == 0
+    assert load_platform(path.parent, "mine").camera.n_pixels == 648
+
+
+def test_new_adds_to_a_project_that_is_there(here):
+    given("new", "first", *GIVEN)
+    config = here / "config" / "config.yaml"
+    config.write_text(config.read_text().replace("seed: 2017 # every", "seed: 3 # my own, every"))
+    before = config.read_text().splitlines()
+    (here / "below").mkdir()
+    result = given("new", "second", *GIVEN, "--project", here / "below")
+    assert result.exit_code == 0
+    after = config.read_text().splitlines()
+    assert [line for line in after if line not in before] == ["  - second"]
+    assert len(after) == len(before) + 1
+
+
+@pytest.mark.parametrize("name", ["a/b", "", "two words"])
+def test_new_refuses_a_name_that_no_file_can_have(here, name):
+    assert "letters, digits, - and _" in one_line(given("new", name, *GIVEN))
+
+
+@pytest.fixture
+def mine(here, platforms_folder):
+    """A project with files for its platform."""
+    given("new", "mine", *GIVEN)
+    write_platform_files(here / "data" / "mine", load_platform(platforms_folder, "ladybird-sim"), 12)
+    return here
+
+
+def test_check_of_good_files_ends_well_in_plain_lines(mine):
+    result = given("check", "mine")
+    assert result.exit_code == 0, result.output
+    assert "no errors" in result.stdout.splitlines()[-1]
+    assert "predicted sigmas" in result.stdout
+    assert "\x1b" not in result.stdout
+    assert "│" not in result.stdout
+
+
+def test_check_of_bad_files_ends_with_one_and_tells_all(mine):
+    (mine / "data" / "mine" / "nav_covs.csv").unlink()
+    view = sorted((mine / "data" / "mine" / "labelled_points").iterdir())[0]
+    view.write_text(view.read_text().replace(",", ";"))
+    result = given("check", "mine")
+    assert result.exit_code == 1
+    errors = [line for line in result.stdout.splitlines() if line.startswith("error")]
+    assert len(errors) == 2
+    assert "2 errors, no warnings" in result.stdout.splitlines()[-1]
+
+
+def test_check_tables_hold_every_finding(mine):
+    from rich.console import Console
+
+    from linepose.check.platform import check_platform
+    from linepose.cli.findings import findings_table, sigmas_table
+
+    report = check_platform("mine", mine)
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(findings_table(report))
+    console.print(sigmas_table(report))
+    text = console.export_text()
+    assert all(finding.subject in text for finding in report.findings)
+    assert "the roll of the camera" in text
+
+
+@pytest.mark.parametrize("command", ["check", "run", "show", "export", "label"])
+def test_outside_a_project_every_command_says_what_to_do(here, command):
+    arguments = ["--format", "urdf"] if command == "export" else []
+    result = given(command, "mine", *arguments)
+    assert result.exit_code == 1
+    assert "linepose new NAME" in one_line(result)
+
+
+@pytest.mark.parametrize("command", ["run", "show", "export", "label"])
+def test_unknown_platform_is_one_line_that_lists_the_known(mine, command):
+    arguments = ["--format", "urdf"] if command == "export" else []
+    assert "expected one of mine" in one_line(given(command, "yours", *arguments))
+
+
+def test_run_starts_snakemake_for_this_platform_only(mine, monkeypatch):
+    started = []
+
+    def start(command, check):
+        started.append(command)
+        return SimpleNamespace(returncode=0)
+
+    monkeypatch.setattr(subprocess, "run", start)
+    result = given("run", "mine", "--cores", "2", "--", "--rerun-triggers", "mtime")
+    assert result.exit_code == 0, result.output
+    (command,) = started
+    assert command[:3] == [sys.executable, "-m", "snakemake"]
+    assert command[command.index("--cores") + 1] == "2"
+    assert command[command.index("--config") + 1] == 'platforms=["mine"]'
+    assert command[command.index("--directory") + 1] == str(mine)
+    assert command[-2:] == ["--rerun-triggers", "mtime"]
+    assert "linepose show mine" in result.stdout
+
+
+def test_run_that_fails_ends_with_one(mine, monkeypatch):
+    monkeypatch.setattr(subprocess, "run", lambda command, check: SimpleNamespace(returncode=1))
+    result = given("run", "mine")
+    assert result.exit_code == 1
+    assert "results/logs" in one_line(result)
+
+
+def test_run_without_the_workflow_says_where_it_is(mine, monkeypatch, tmp_path):
+    monkeypatch.setattr(run_command, "__file__", str(tmp_path / "site-packages" / "linepose" / "cli" / "run.py"))
+    result = given("run", "mine")
+    assert result.exit_code == 1
+    assert "clone the repository" in one_line(result)
+
+
+@pytest.mark.parametrize("cores", ["0", "two"])
+def test_wrong_usage_ends_with_two(mine, cores):
+    assert given("run", "mine", "--cores", cores).exit_code == 2
+    assert given("frobnicate").exit_code == 2
+
+
+@pytest.fixture
+def finished(mine, monkeypatch):
+    """The made-up results in the place of the platform's own."""
+    made_up.write_results(mine / "results" / "mine")
+    return mine
+
+
+def test_show_tells_pose_verdict_and_where_files_are(finished):
+    result = given("show", "mine")
+    assert result.exit_code == 0, result.output
+    lines = result.stdout.splitlines()
+    for name, value in zip(("r_x", "r_y", "r_z"), made_up.OPTIMUM[:3], strict=True):
+        (line,) = [line for line in lines if line.startswith(f"{name} ")]
+        assert f"{value:.4f} m" in line
+    assert any(line.startswith("roll") and "deg" in line for line in lines)
+    assert any("4 of 6 observations accepted" in line for line in lines)
+    assert any("removed: " in line for line in lines)
+    assert str(finished / "results" / "mine" / "figures") in result.stdout
+
+
+def test_show_before_a_run_says_what_to_do(mine):
+    assert "linepose run mine" in one_line(given("show", "mine"))
+
+
+def test_export_writes_below_the_results_or_where_it_is_told(finished):
+    result = given("export", "mine", "--format", "urdf")
+    assert result.exit_code == 0, result.output
+    assert (finished / "results" / "mine" / "exports" / "mine.urdf").is_file()
+    result = given("export", "mine", "-f", "json", "-o", finished / "pose.json", "--child-frame", "my_camera")
+    assert result.exit_code == 0, result.output
+    assert "my_camera" in (finished / "pose.json").read_text()
+
+
+def test_export_tells_its_formats(finished):
+    from linepose.exports import EXPORTS
+
+    told = given("export", "--list")
+    assert told.exit_code == 0
+    assert all(f"{key} " in told.stdout for key in EXPORTS)
+    assert "urdf" in one_line(given("export", "mine"))
+    assert "did you mean urdf?" in one_line(given("export", "mine", "--format", "urd"))
+
+
+def test_label_is_for_scans(mine):
+    assert "source.kind" in one_line(given("label", "mine"))
+
+
+def test_program_starts_quickly_and_without_the_science():
+    """Help must not wait for numba, pandas and matplotlib."""
+    code = "import sys; from linepose.cli import app; print(*sys.modules)"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"numba", "pandas", "matplotlib", "scipy"} & set(told.stdout.split())
