@@ -125,6 +125,8 @@ def test_new_adds_to_a_project_that_is_there(here):
     after = config.read_text().splitlines()
     assert [line for line in after if line not in before] == ["  - second"]
     assert len(after) == len(before) + 1
+    given("new", "second", *GIVEN, "--force")
+    assert config.read_text().splitlines() == after
 
 
 @pytest.mark.parametrize("name", ["a/b", "", "two words"])
