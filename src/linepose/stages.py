@@ -7,6 +7,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from linepose.diagnostics import ChainDiagnostics
+from linepose.errors import InputError
 from linepose.likelihood.base import Likelihood
 from linepose.optimise import Search, laplace_covariance, optimise
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
@@ -55,10 +56,13 @@ def sample_table(chain: Chain, names: Sequence[str]) -> pd.DataFrame:
 
 
 def samples_from_table(table: pd.DataFrame, names: Sequence[str]) -> Floats:
-    """Samples (steps, walkers, P) of a table that `sample_table` made."""
+    """Samples (steps, walkers, P) of a table that `sample_table` made; raises InputError where rows are missing."""
     ordered = table.sort_values(["step", "walker"])
-    shape = (int(table["step"].max()) + 1, int(table["walker"].max()) + 1, len(names))
-    return ordered[list(names)].to_numpy().reshape(shape)
+    n_steps, n_walkers = int(table["step"].max()) + 1, int(table["walker"].max()) + 1
+    if len(table) != n_steps * n_walkers:
+        expected = f"{n_steps} steps of {n_walkers} walkers"
+        raise InputError("samples", f"{len(table)} rows", expected, "run its stage again")
+    return ordered[list(names)].to_numpy().reshape(n_steps, n_walkers, len(names))
 
 
 def estimated_parameters(optima: pd.DataFrame) -> list[str]:

@@ -1,12 +1,18 @@
 """Files as a platform's devices write them: labelled views and covariances of a simulated survey, without images."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from spectral.io.envi import write_envi_header
 
 from linepose.config.platform import Platform
 from linepose.observations import Survey
+from linepose.simulate.envi import write_line_times
+from linepose.simulate.record import labels, navigation_log, write_covariances
+from linepose.simulate.render import line_times_s
 from linepose.simulate.survey import reported_covariance, simulate_survey, without_faults
+from linepose.simulate.trajectory import time_us
 
 VIEWS = "labelled_points"
 
@@ -43,3 +49,25 @@ def write_platform_files(folder: Path, platform: Platform, n_observations: int =
     assert platform.simulation is not None
     write_labelled_views(folder, survey, reported_covariance(platform.simulation.reported_sigma))
     return survey
+
+
+def write_scan_files(folder: Path, platform: Platform, n_observations: int) -> None:
+    """The files of the first passes of a simulated platform as scans without a picture: all that a check reads."""
+    assert platform.simulation is not None
+    settings = replace(platform.simulation, passes=platform.simulation.passes[:n_observations], faults=())
+    camera = platform.intrinsics()
+    (folder / "scans").mkdir(parents=True)
+    navigation_log(settings).to_parquet(folder / "navigation.parquet", index=False)
+    write_covariances(folder / "covariances.csv", settings)
+    labels(camera, settings).to_csv(folder / "labels.csv", index=False, float_format="%.2f")
+    for number in range(1, n_observations + 1):
+        stamps = time_us(settings, line_times_s(camera, settings, number))
+        path = folder / "scans" / f"observation-{number:02d}"
+        write_line_times(path, stamps)
+        size = {"samples": camera.n_pixels, "lines": len(stamps), "bands": 1}
+        write_envi_header(str(path.with_suffix(".hdr")), size | _ENVI)
+        with path.with_suffix(".bil").open("wb") as data:
+            data.truncate(2 * camera.n_pixels * len(stamps))
+
+
+_ENVI = {"header offset": 0, "file type": "ENVI Standard", "data type": 12, "interleave": "bil", "byte order": 0}

@@ -137,14 +137,6 @@ def test_bad_observation_is_removed(simulated, arrays):
     assert linepose.calibrate(observations, simulated.intrinsics(), BY_HAND, settings).outliers[:1] == [5]
 
 
-def test_prior_draws_the_pose_to_the_hand_measurement(simulated, arrays, calibration):
-    sure = linepose.HandMeasured((0.2, 0.0, -0.8), (-56.0, 0.0, -90.0), 1e-4, 1e-3)
-    settings = linepose.CalibrationSettings(threshold_px=500.0, sampling=QUICK.sampling, prior="hand_measured")
-    drawn = linepose.calibrate(linepose.observations_from_arrays(**arrays), simulated.intrinsics(), sure, settings)
-    assert_allclose(drawn.pose, sure.pose, atol=2e-3)
-    assert np.all(drawn.sigma < calibration.sigma)
-
-
 @pytest.mark.parametrize(
     ("name", "change", "told"),
     [

@@ -31,6 +31,8 @@ def test_commands_of_the_page_in_order(tmp_path):
             write_platform_files(
                 tmp_path / "data" / "myrobot", load_platform(ROOT / "config" / "platforms", "ladybird-sim"), 8
             )
+            platform = tmp_path / "config" / "platforms" / "myrobot.yaml"
+            platform.write_text(platform.read_text() + "  repeatability: null\n  mapping: null\n")
             config = tmp_path / "config" / "config.yaml"
             config.write_text(config.read_text() + SHORT)
     assert "linepose check myrobot" in told["new"]

@@ -128,8 +128,7 @@ def _add_to_project(root: Path, name: str) -> None:
     from linepose.project_folder import CONFIG
 
     if not (root / CONFIG).is_file():
-        for made in make_project(root, name):
-            typer.echo(f"wrote {made}")
+        typer.echo(f"wrote {make_project(root, name)}")
     elif add_platform(root / CONFIG, name):
         typer.echo(f"added {name} to the platforms of {root / CONFIG}")
 

@@ -31,19 +31,14 @@ def run(
     from linepose.project_folder import find_project, load_platform_project
 
     root = find_project(project)
-    load_platform_project(name, root)
+    study = load_platform_project(name, root).study
     snakefile = find_workflow(root)
+    settings = [f'platforms=["{name}"]']
+    if not (root / study.published).is_file():  # a project beside the clone regresses on the clone's numbers
+        settings.append(f"published={snakefile.parent / study.published}")
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(snakefile), "--directory", str(root)]
-    command += [
-        "--cores",
-        str(cores or len(os.sched_getaffinity(0))),
-        "--quiet",
-        "host",
-        "rules",
-        "--config",
-        f'platforms=["{name}"]',
-    ]
-    command += ["--dry-run"] if dry_run else []
+    command += ["--cores", str(cores or len(os.sched_getaffinity(0))), "--quiet", "host", "rules"]
+    command += ["--config", *settings, *(["--dry-run"] if dry_run else [])]
     finished = subprocess.run([*command, *(further or [])], check=False)
     if finished.returncode:
         typer.echo(

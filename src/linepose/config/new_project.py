@@ -21,22 +21,14 @@ data_folders: # searched in this order for a folder named like the data set
 
 seed: 2017 # every random number follows from it
 """
-_PUBLISHED: Final = "# Numbers to regress on: none for a platform of one's own.\n{}\n"
 
 
-def make_project(root: Path, platform: str) -> list[Path]:
-    """Write a minimal project with one platform into a folder: the paths that were made."""
-    made = []
-    for path, text in {
-        root / CONFIG: _STUDY.format(name=platform),
-        root / CONFIG.parent / "published.yaml": _PUBLISHED,
-    }.items():
-        if not path.exists():
-            with whole_file(path) as temporary:
-                temporary.write_text(text, encoding="utf-8")
-            made.append(path)
+def make_project(root: Path, platform: str) -> Path:
+    """Write a minimal project with one platform into a folder that has none: its config.yaml."""
+    with whole_file(root / CONFIG) as temporary:
+        temporary.write_text(_STUDY.format(name=platform), encoding="utf-8")
     (root / "data").mkdir(exist_ok=True)
-    return made
+    return root / CONFIG
 
 
 def add_platform(config: Path, platform: str) -> bool:

@@ -13,6 +13,7 @@ from linepose.figures.checks import usable_rows
 from linepose.figures.style import BLACK, BLUE, HALF_PAGE_IN, blank_figure, few_ticks, styled
 
 _FAILED = "#E8D9C5"
+_RATES = ["success_rate", "success_rate_low", "success_rate_high"]
 _NAMES = {
     "powell": "Powell, the paper's equations",
     "powell_in_front": "Powell, points in front of the camera",
@@ -59,14 +60,14 @@ def _edges(
 
 def basin_caption(summary: pd.DataFrame, region: Region) -> str:
     """Success rates inside and outside the claimed region, with their intervals."""
-    rows = usable_rows(summary, ["optimiser", "region", "success_rate", "n_starts"], "basin_summary.parquet")
+    rows = usable_rows(summary, ["optimiser", "region"], "basin_summary.parquet")
+    rows = rows[rows["region"].isin(["inside", "outside"])].dropna(subset=_RATES)  # a region may have no starts
+    usable_rows(rows, _RATES, "basin_summary.parquet, regions inside and outside")
     parts = []
     for optimiser, part in rows.groupby("optimiser", sort=False):
-        rates = part.set_index("region")
         told = ", ".join(
-            f"{100 * rates.loc[name, 'success_rate']:.0f} % ({100 * rates.loc[name, 'success_rate_low']:.0f}-"
-            f"{100 * rates.loc[name, 'success_rate_high']:.0f} %) {name}"
-            for name in ("inside", "outside")
+            f"{100 * rate:.0f} % ({100 * low:.0f}-{100 * high:.0f} %) {name}"
+            for name, rate, low, high in part[["region", *_RATES]].itertuples(index=False)
         )
         parts.append(f"{_NAMES.get(str(optimiser), optimiser)}: {told}")
     return (

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from linepose.errors import InputError
+from linepose.pose import POSE_COLUMNS
 from linepose.rotations import Floats
 
 
@@ -27,13 +28,30 @@ def usable_rows(table: pd.DataFrame, columns: Sequence[str], name: str) -> pd.Da
     return table
 
 
-def stage_row(table: pd.DataFrame, stage: str, columns: Sequence[str], name: str) -> pd.Series:
-    """The row of one stage, such as `inliers` or `hand_measured`; raises InputError where there is none."""
+def stage_rows(table: pd.DataFrame, stage: str, columns: Sequence[str], name: str) -> pd.DataFrame:
+    """The rows of one stage, such as `inliers` or `hand_measured`; raises InputError where there are none."""
     rows = usable_rows(table, ["stage"], name)
-    rows = rows[rows["stage"] == stage]
-    if rows.empty:
-        raise InputError(name, f"no stage {stage}", "one row for it", "run its stage again")
-    return usable_rows(rows, columns, name).iloc[0]
+    return usable_rows(rows[rows["stage"] == stage], columns, f"{name}, stage {stage}")
+
+
+def accepted_rows(outliers: pd.DataFrame) -> pd.DataFrame:
+    """The rows of the accepted stage of the outlier removal; raises InputError where there are none."""
+    rows = usable_rows(outliers, ["accepted"], "outliers.parquet")
+    return usable_rows(rows[rows["accepted"]], ["observation", "error_px"], "outliers.parquet, accepted stage")
+
+
+def usable_chain(samples: pd.DataFrame) -> Floats:
+    """The poses (S, 6) of a chain, `samples` as in `result_schemas.SAMPLES`; raises InputError for one that stands."""
+    chain = usable_rows(samples, POSE_COLUMNS, "samples")[list(POSE_COLUMNS)].to_numpy()
+    standing = [name for name, spread in zip(POSE_COLUMNS, np.ptp(chain, axis=0), strict=True) if spread == 0]
+    if standing:
+        raise InputError(
+            "samples",
+            f"the same value of {', '.join(standing)} in all {len(chain)} rows",
+            "a chain that moves",
+            "look at its acceptance in diagnostics.parquet, and run its stage again",
+        )
+    return chain
 
 
 def some_rows(values: Floats, most: int) -> Floats:

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from linepose.figures.checks import usable_rows
+from linepose.figures.checks import usable_chain
 from linepose.figures.style import POSE_MARKS, WIDE_IN, pose_handles, styled
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.rotations import Floats
@@ -26,7 +26,7 @@ def corner_plot(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figur
 
     `samples` as in `result_schemas.SAMPLES`; contours hold 39, 68 and 95 % of the samples, dashes 16, 50 and 84 %.
     """
-    chain = usable_rows(samples, POSE_COLUMNS, "samples")[list(POSE_COLUMNS)].to_numpy()
+    chain = usable_chain(samples)
     poses = {name: np.asarray(pose, dtype=float) for name, pose in marked.items()}
     figure = Figure(figsize=(WIDE_IN, WIDE_IN))
     corner.corner(
@@ -100,7 +100,7 @@ def two_ticks(low: float, high: float) -> list[float]:
 
 def corner_plot_caption(samples: pd.DataFrame) -> str:
     """How many samples, and the strongest correlation among the parameters."""
-    chain = samples[list(POSE_COLUMNS)].to_numpy()
+    chain = usable_chain(samples)
     correlation = np.corrcoef(chain.T) - np.eye(N_PARAMETERS)
     i, j = np.unravel_index(int(np.abs(correlation).argmax()), correlation.shape)
     first, second = (POSE_COLUMNS[k].rsplit("_", 1)[0] for k in sorted((i, j)))

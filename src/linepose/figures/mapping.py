@@ -116,7 +116,8 @@ def angle_error_caption(summary: pd.DataFrame, angle_deg: float) -> str:
 
 def _spread_mm(summary: pd.DataFrame, pose: str, observations: str) -> float:
     rows = usable_rows(summary, ["pose", "observations", "spread_mm"], "mapping_summary.parquet")
-    return float(rows[(rows["pose"] == pose) & (rows["observations"] == observations)]["spread_mm"].iloc[0])
+    rows = rows[(rows["pose"] == pose) & (rows["observations"] == observations)]
+    return float(usable_rows(rows, ["spread_mm"], f"mapping_summary.parquet, pose {pose}")["spread_mm"].iloc[0])
 
 
 def _view(estimated: pd.DataFrame, observations: pd.DataFrame) -> tuple[PlaneView, Floats]:

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
-from linepose.figures.checks import usable_rows
+from linepose.figures.checks import accepted_rows, usable_rows
 from linepose.figures.style import RED, WIDE_IN, blank_figure, styled
 from linepose.outliers import removal_order
 
@@ -45,7 +45,7 @@ def outlier_matrix(outliers: pd.DataFrame) -> Figure:
         color=RED,
         label="removed next",
     )
-    accepted = int(np.flatnonzero(sizes == table.loc[table["accepted"], "n_observations"].iloc[0])[0])
+    accepted = int(np.flatnonzero(sizes == accepted_rows(table)["n_observations"].iloc[0])[0])
     frame = Rectangle((-0.5, accepted - 0.5), len(numbers), 1, fill=False, edgecolor=RED, linewidth=1.8)
     frame.set(label="accepted", clip_on=False, zorder=3)
     axes.add_patch(frame)
@@ -68,8 +68,8 @@ def outlier_matrix(outliers: pd.DataFrame) -> Figure:
 
 def outlier_matrix_caption(outliers: pd.DataFrame, threshold_px: float) -> str:
     """What was removed, in which order, and what remains."""
+    accepted = accepted_rows(outliers)
     order = removal_order(outliers)
-    accepted = outliers[outliers["accepted"]]
     first = outliers[outliers["n_observations"] == outliers["n_observations"].max()]
     removed = f"Removed in this order: {', '.join(map(str, order))}." if order else "None was removed."
     return (

@@ -14,7 +14,7 @@ from matplotlib.patches import Circle, Rectangle
 from numpy.typing import ArrayLike
 
 from linepose.config.outline import OutlineSection, OutlineViewSection
-from linepose.figures.checks import some_rows, usable_rows
+from linepose.figures.checks import some_rows, usable_chain
 from linepose.figures.style import (
     BLACK,
     BLUE,
@@ -26,7 +26,6 @@ from linepose.figures.style import (
     pose_handles,
     styled,
 )
-from linepose.pose import POSE_COLUMNS
 from linepose.rotations import Floats, matrix_from_rotation_vector
 
 _SHOWN_AXES: Final = 200
@@ -42,7 +41,7 @@ def platform_sketch(samples: pd.DataFrame, outline: OutlineSection, marked: Mapp
 
     `samples` as in `result_schemas.SAMPLES`; `marked` has poses (6,) by name: optimum, hand measured, truth.
     """
-    chain = usable_rows(samples, POSE_COLUMNS, "samples")[list(POSE_COLUMNS)].to_numpy()
+    chain = usable_chain(samples)
     poses = {name: np.asarray(pose, dtype=float) for name, pose in marked.items()}
     figure = blank_figure(WIDE_IN, 4.4)
     panels = figure.subplots(2, 2)
@@ -106,7 +105,7 @@ def _draw_outline(panel: Axes, view: OutlineViewSection) -> None:
 
 def platform_sketch_caption(samples: pd.DataFrame) -> str:
     """How large the cloud of camera positions is, and that the outline is a sketch."""
-    sigma_mm = 1e3 * samples[list(POSE_COLUMNS[:3])].std().to_numpy()
+    sigma_mm = 1e3 * usable_chain(samples)[:, :3].std(axis=0, ddof=1)
     return (
         "The sampled camera positions (shaded by density) and optical axes (lines) on the platform, seen from the side "
         "and from the front; below, the dotted squares close up. The positions scatter by "

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from linepose.figures.checks import usable_rows
+from linepose.figures.checks import stage_rows, usable_rows
 from linepose.figures.style import BLACK, BLUE, GREY, SKY, WIDE_IN, blank_figure, styled
 from linepose.residual_tables import alike_in_a_view
 
@@ -59,12 +59,13 @@ def residuals_caption(table: pd.DataFrame, by: str) -> str:
     size = f"RMS error {rms:.1f} px, where sigmas of {expected:.1f} px in its direction were expected. "
     if by == "observation":
         common = max(alike_in_a_view(rows, column) for column in ("error_u_px", "error_v_px"))
-        return (
-            "Observed minus reprojected position by observation. "
-            + size
-            + f"Up to {100 * max(common, 0):.0f} % of the "
-            "variance is common to all points of a view, where the published noise model takes them as independent."
+        told = (
+            ""
+            if np.isnan(common)
+            else f"Up to {100 * max(common, 0):.0f} % of the variance is common to all points of a view, where the "
+            "published noise model takes them as independent."
         )
+        return f"Observed minus reprojected position by observation. {size}{told}".strip()
     means = rows.groupby(by)[["error_u_px", "error_v_px"]].mean().abs().max(axis=1)
     return (
         "Observed minus reprojected position by point. " + size + f"The largest mean is {means.max():.1f} px, at point "
@@ -73,5 +74,4 @@ def residuals_caption(table: pd.DataFrame, by: str) -> str:
 
 
 def _inliers(table: pd.DataFrame) -> pd.DataFrame:
-    rows = usable_rows(table, _COLUMNS, "residuals.parquet")
-    return usable_rows(rows[rows["stage"] == "inliers"], _COLUMNS, "residuals.parquet, stage inliers")
+    return stage_rows(usable_rows(table, _COLUMNS, "residuals.parquet"), "inliers", _COLUMNS, "residuals.parquet")

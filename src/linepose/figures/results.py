@@ -9,9 +9,8 @@ import pandas as pd
 import pyarrow as pa
 
 from linepose.config.platform import Platform
-from linepose.figures.checks import stage_row
+from linepose.figures.checks import accepted_rows, stage_rows, usable_rows
 from linepose.observations import POSITION_COLUMNS, Survey, survey_from_table
-from linepose.outliers import stage_observations
 from linepose.pose import POSE_COLUMNS
 from linepose.result_schemas import OBSERVATIONS, OUTLIERS, POSE, SAMPLES
 from linepose.rotations import Floats
@@ -50,9 +49,14 @@ class PlatformResults:
         return np.array(truth.groupby("point")[columns].first())
 
     def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
-        """A result by its name below the folder; raises InputError where it is missing or lacks columns."""
+        """A result by its name below the folder.
+
+        Raises InputError where it is missing, lacks columns or rows, or has a gap in a column that may have none.
+        """
         if name not in self._read:
-            self._read[name] = read_table(self.folder / f"{name}.parquet", schema)
+            whole = [field.name for field in schema if not field.nullable]
+            table = read_table(self.folder / f"{name}.parquet", schema)
+            self._read[name] = usable_rows(table, whole, f"{self.name}/{name}.parquet")
         return self._read[name]
 
     def has(self, name: str) -> bool:
@@ -65,7 +69,7 @@ class PlatformResults:
 
     def accepted(self) -> list[int]:
         """Numbers of the accepted observations."""
-        return stage_observations(self.table("outliers", OUTLIERS))["inliers"]
+        return accepted_rows(self.table("outliers", OUTLIERS))["observation"].astype(int).tolist()
 
     def samples(self) -> pd.DataFrame:
         """The chain of the accepted observations."""
@@ -73,8 +77,8 @@ class PlatformResults:
 
     def pose(self, stage: str) -> Floats:
         """The pose (6,) of a stage, such as `inliers` or `hand_measured`."""
-        row = stage_row(self.table("pose", POSE), stage, POSE_COLUMNS, "pose.parquet")
-        return np.array(row[list(POSE_COLUMNS)], dtype=float)
+        rows = stage_rows(self.table("pose", POSE), stage, POSE_COLUMNS, "pose.parquet")
+        return np.array(rows[list(POSE_COLUMNS)].iloc[0], dtype=float)
 
     def marked_poses(self) -> Mapping[str, Floats]:
         """The poses (6,) that figures mark, by the name in the legend."""

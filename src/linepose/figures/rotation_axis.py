@@ -10,7 +10,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 from scipy.stats import gaussian_kde
 
-from linepose.figures.checks import some_rows, usable_rows
+from linepose.figures.checks import some_rows, usable_chain
 from linepose.figures.style import (
     BLACK,
     GREY,
@@ -22,7 +22,6 @@ from linepose.figures.style import (
     pose_handles,
     styled,
 )
-from linepose.pose import POSE_COLUMNS
 from linepose.rotations import Floats
 
 _MOST_DOTS: Final = 3000
@@ -38,8 +37,7 @@ def rotation_axis(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Fig
 
     `samples` as in `result_schemas.SAMPLES`; `marked` has poses (6,) by name: optimum, hand measured, truth.
     """
-    chain = usable_rows(samples, POSE_COLUMNS, "samples")[list(POSE_COLUMNS[3:])].to_numpy()
-    axis, angle_deg = axis_and_angle(chain)
+    axis, angle_deg = axis_and_angle(usable_chain(samples)[:, 3:])
     marks = {name: axis_and_angle(np.asarray(pose, dtype=float)[3:]) for name, pose in marked.items()}
     pole = axis.mean(axis=0) / np.linalg.norm(axis.mean(axis=0))
     tangent, labels = tangent_plane(pole)
@@ -130,7 +128,7 @@ def _on_sphere(longitude: Floats, latitude: Floats) -> Floats:
 
 def rotation_axis_caption(samples: pd.DataFrame, hand_measured: ArrayLike) -> str:
     """The mean angle with its sigma, how far the axis scatters, and the hand measurement's difference."""
-    axis, angle_deg = axis_and_angle(samples[list(POSE_COLUMNS[3:])].to_numpy())
+    axis, angle_deg = axis_and_angle(usable_chain(samples)[:, 3:])
     hand_axis, hand_deg = axis_and_angle(np.asarray(hand_measured, dtype=float)[3:])
     pole = axis.mean(axis=0) / np.linalg.norm(axis.mean(axis=0))
     scatter = np.degrees(np.sqrt(np.mean(np.sum((axis - pole) ** 2, axis=1))))

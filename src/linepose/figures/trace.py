@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from linepose.diagnostics import MINIMUM_STEPS_PER_TIME
-from linepose.figures.checks import usable_rows
+from linepose.figures.checks import stage_rows, usable_rows
 from linepose.figures.corner_plot import LABELS
 from linepose.figures.style import (
     BLACK,
@@ -98,7 +98,8 @@ def autocorrelation_function(series: Floats) -> Floats:
 
 def trace_caption(diagnostics: pd.DataFrame) -> str:
     """Steps' worth of the chain: acceptance, effective samples, and R-hat."""
-    rows = diagnostics[diagnostics["stage"] == "inliers"]
+    columns = ["acceptance_fraction", "split_r_hat", "effective_sample_size"]
+    rows = stage_rows(diagnostics, "inliers", columns, "diagnostics.parquet")
     return (
         "The pose parameters over the kept steps of the chain. A chain that has settled shows a level band. "
         f"Acceptance {100 * rows['acceptance_fraction'].iloc[0]:.0f} %, worst split R-hat "
@@ -108,7 +109,9 @@ def trace_caption(diagnostics: pd.DataFrame) -> str:
 
 def autocorrelation_caption(diagnostics: pd.DataFrame, n_steps: int) -> str:
     """The autocorrelation time against the chain's length."""
-    time = diagnostics.loc[diagnostics["stage"] == "inliers", "autocorrelation_time"].max()
+    time = stage_rows(diagnostics, "inliers", ["autocorrelation_time"], "diagnostics.parquet")[
+        "autocorrelation_time"
+    ].max()
     return (
         f"How long a walker remembers: the longest autocorrelation time is estimated at {time:.0f} steps. The chain "
         f"has {n_steps} steps, {n_steps / time:.0f} times as many; {MINIMUM_STEPS_PER_TIME} times is the rule for a "

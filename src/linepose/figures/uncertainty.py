@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from linepose.figures.checks import usable_rows
+from linepose.figures.checks import stage_rows, usable_rows
 from linepose.figures.style import BLACK, BLUE, GREEN, HALF_PAGE_IN, RED, blank_figure, styled
 from linepose.pose import SIGMA_COLUMNS
 
@@ -40,7 +40,7 @@ def uncertainty(table: pd.DataFrame) -> Figure:
         panel.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)
     panels[1].set_xlabel("Observations used")
     panels[1].xaxis.set_major_locator(MaxNLocator(integer=True))
-    accepted = int(rows.loc[rows["stage"] == "inliers", "n_observations"].iloc[0])
+    accepted = int(stage_rows(rows, "inliers", SIGMA_COLUMNS, "uncertainty.parquet")["n_observations"].iloc[0])
     for panel in panels:
         panel.axvline(accepted, color=BLACK, linewidth=0.6, linestyle=":")
     handles = [
@@ -54,11 +54,12 @@ def uncertainty(table: pd.DataFrame) -> Figure:
 
 def uncertainty_caption(table: pd.DataFrame) -> str:
     """The largest sigmas of all observations and of the accepted ones."""
-    sampled = table[table["method"] == "mcmc"].set_index("stage")[list(SIGMA_COLUMNS)]
-    told = [
-        f"{1e3 * sampled.loc[stage].iloc[:3].max():.0f} mm and {np.degrees(sampled.loc[stage].iloc[3:].max()):.2f}°"
+    sampled = table[table["method"] == "mcmc"]
+    sigmas = [
+        stage_rows(sampled, stage, SIGMA_COLUMNS, "uncertainty.parquet")[list(SIGMA_COLUMNS)].iloc[0]
         for stage in ("all", "inliers")
     ]
+    told = [f"{1e3 * sigma.iloc[:3].max():.0f} mm and {np.degrees(sigma.iloc[3:].max()):.2f}°" for sigma in sigmas]
     return (
         "One standard deviation of each pose parameter at each stage of the outlier removal, from the samples and from "
         f"the likelihood's curvature. The largest: {told[0]} with all observations, {told[1]} with the accepted ones. "

@@ -10,9 +10,9 @@ import pyarrow as pa
 from linepose import experiment_schemas, result_schemas
 from linepose.experiments.split_summary import sigma_factor
 from linepose.experiments.subsets import body_angles_rad
+from linepose.figures.checks import accepted_rows, stage_rows, usable_chain
 from linepose.figures.results import PlatformResults
 from linepose.observations import Survey
-from linepose.pose import POSE_COLUMNS
 from linepose.report.pose_tables import (
     PoseNumber,
     PoseWithCovariance,
@@ -27,6 +27,10 @@ from linepose.rotations import Floats
 
 class Results(Protocol):
     """The results of one platform, from files or from memory, as the verdict asks for them."""
+
+    @property
+    def name(self) -> str:
+        """Of the platform, for messages."""
 
     @property
     def threshold_px(self) -> float:
@@ -76,12 +80,12 @@ class PlatformSummary:
 
 def summarise(results: PlatformResults) -> PlatformSummary:
     """The summary of a platform whose stages have all been run."""
-    samples = results.samples()[list(POSE_COLUMNS)].to_numpy()
-    estimate = PoseWithCovariance(results.pose("inliers"), np.cov(samples.T))
+    covariance = np.cov(usable_chain(results.samples()), rowvar=False)
+    estimate = PoseWithCovariance(results.pose("inliers"), covariance)
     hand = PoseWithCovariance(results.platform.start_pose(), results.platform.start_covariance())
     numbers = rotation_vector_numbers(estimate, hand, results.true_pose)
-    poses = results.table("pose", result_schemas.POSE).set_index("stage")
     evidence = gather_evidence(results, numbers)
+    optimum = _accepted_stage(results, "optima", result_schemas.OPTIMA).iloc[0]
     return PlatformSummary(
         name=results.name,
         description=results.platform.description or results.name,
@@ -92,21 +96,19 @@ def summarise(results: PlatformResults) -> PlatformSummary:
         quaternion=quaternion(estimate.pose),
         n_observations=evidence.n_observations,
         n_accepted=evidence.n_accepted,
-        neg_log_likelihood=float(poses.loc["inliers", "neg_log_likelihood"]),
+        neg_log_likelihood=float(optimum["neg_log_likelihood"]),
         simulated=results.true_pose is not None,
     )
 
 
 def gather_evidence(results: Results, numbers: list[PoseNumber]) -> Evidence:
     """The numbers that the verdict rests on; `numbers` are the pose's six."""
-    optimum = results.table("optima", result_schemas.OPTIMA).set_index("stage").loc["inliers"]
-    chain = results.table("diagnostics", result_schemas.DIAGNOSTICS)
-    chain = chain[chain["stage"] == "inliers"]
+    optimum = _accepted_stage(results, "optima", result_schemas.OPTIMA).iloc[0]
+    chain = _accepted_stage(results, "diagnostics", result_schemas.DIAGNOSTICS)
+    residuals = _accepted_stage(results, "residuals", result_schemas.RESIDUALS)
     outliers = results.table("outliers", result_schemas.OUTLIERS)
-    accepted = outliers[outliers["accepted"]]
+    accepted = accepted_rows(outliers)
     worst = accepted.loc[accepted["error_px"].idxmax()]
-    residuals = results.table("residuals", result_schemas.RESIDUALS)
-    residuals = residuals[residuals["stage"] == "inliers"]
     farthest = max(numbers, key=lambda number: abs(number.difference_sigmas))
     wrong = max(numbers, key=lambda number: abs(number.error_sigmas or 0.0))
     most_influential, influence = _influence(results)
@@ -133,6 +135,10 @@ def gather_evidence(results: Results, numbers: list[PoseNumber]) -> Evidence:
         truth_parameter=wrong.name,
         noise_model=results.noise_model,
     )
+
+
+def _accepted_stage(results: Results, name: str, schema: pa.Schema) -> pd.DataFrame:
+    return stage_rows(results.table(name, schema), "inliers", [], f"{results.name}/{name}.parquet")
 
 
 def tilt_spread_deg(survey: Survey) -> float:

@@ -5,6 +5,7 @@ Only decisions stand here; the numbers they rest on come in as `Evidence`.
 
 from dataclasses import dataclass
 from enum import IntEnum
+from math import isnan
 from typing import Final
 
 from linepose.diagnostics import MAXIMUM_R_HAT, MINIMUM_STEPS_PER_TIME
@@ -172,6 +173,8 @@ def residual_size(evidence: Evidence) -> Check:
 
 def independence(evidence: Evidence) -> Check:
     """Whether the points of a view err independently, where the noise model takes them to."""
+    if isnan(evidence.alike_in_a_view):
+        return Check("Independence within a view", Level.GOOD, "Not known: it takes two observations of two points.")
     share = 100 * max(evidence.alike_in_a_view, 0.0)
     found = f"{share:.0f} % of the residuals' variance is common to all points of a view."
     if evidence.alike_in_a_view <= ALIKE_IN_A_VIEW:

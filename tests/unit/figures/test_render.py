@@ -2,24 +2,31 @@
 
 import hashlib
 import os
+import shutil
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from matplotlib.text import Text
 from PIL import Image
 
+from linepose.errors import LineposeError
 from linepose.figures.catalogue import FIGURES
+from linepose.figures.checks import usable_chain
 from linepose.figures.render import render_figures
 from linepose.figures.results import PlatformResults
 from linepose.figures.style import HALF_PAGE_IN, LEAST_PT, PNG_DPI, blank_figure, save
+from linepose.report.platform_sections import platform_sections
+from linepose.report.summary import summarise
 from linepose.result_schemas import FIGURES as SCHEMA
 from linepose.storage import write_table
 
 from .. import made_up
 
-WITHOUT_SCANS = {"stacked_scan", "labelled_points", "detected_points"}
+NOT_MADE = {entry.name for entry in FIGURES if entry.left_out(made_up.platform())}  # for want of scans or experiments
 
 
 @pytest.fixture(scope="module")
@@ -32,10 +39,11 @@ def drawn(tmp_path_factory):
 
 def test_every_figure_is_drawn_or_has_a_sentence_in_its_place(drawn):
     folder, index = drawn
+    assert {"stacked_scan", "labelled_points"} < NOT_MADE
     assert list(index["figure"]) == [entry.name for entry in FIGURES]
-    assert set(index.loc[index["left_out"] != "", "figure"]) == WITHOUT_SCANS
+    assert set(index.loc[index["left_out"] != "", "figure"]) == NOT_MADE
     files = {path.name for path in (folder / "figures").iterdir()}
-    shown = set(index["figure"]) - WITHOUT_SCANS
+    shown = set(index["figure"]) - NOT_MADE
     assert files == {f"{name}.{kind}" for name in shown for kind in ("png", "pdf")}
     assert all(index.loc[index["left_out"] == "", "caption"].str.endswith("."))
     write_table(index, folder / "index.parquet", SCHEMA)
@@ -49,7 +57,7 @@ def test_a_broken_chain_costs_its_figures_and_no_other(drawn, tmp_path):
     index = render_figures(PlatformResults("made_up", made_up.platform(), tmp_path, 5.0), tmp_path / "figures")
     left_out = index.set_index("figure")["left_out"]
     lost = {"corner", "rotation_axis", "platform_sketch", "trace", "autocorrelation"}
-    assert set(left_out[left_out != ""].index) == WITHOUT_SCANS | lost
+    assert set(left_out[left_out != ""].index) == NOT_MADE | lost
     assert "theta_x_rad" in left_out["corner"]
     assert not any((tmp_path / "figures" / f"{name}.png").exists() for name in lost)
 
@@ -72,7 +80,58 @@ def test_what_was_not_asked_for_is_said_and_what_is_missing_is_named(tmp_path):
         assert word in left_out[name]
 
 
-@pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in WITHOUT_SCANS], ids=lambda e: e.name)
+def reads(reader, folder):
+    """What a figure, a caption or a part of the page reads."""
+    results = PlatformResults("made_up", made_up.platform(), folder, 5.0)
+    reader(results)
+    return set(results._read)
+
+
+@pytest.fixture(scope="module")
+def readers(drawn):
+    """Everything that is made from results, with the tables that each reads."""
+    entries = [entry for entry in FIGURES if entry.name not in NOT_MADE]
+    makers = [*(entry.caption for entry in entries), *(entry.draw for entry in entries), summarise, platform_sections]
+    return [(maker, reads(maker, drawn[0])) for maker in makers]
+
+
+@pytest.mark.parametrize("name", made_up.TABLES)
+def test_a_result_of_which_one_row_is_left_is_told_by_an_error_of_ours_or_still_makes_sense(
+    drawn, readers, tmp_path, name
+):
+    folder = shutil.copytree(drawn[0], tmp_path / "made_up")
+    path = folder / f"{name}.parquet"
+    pd.read_parquet(path).iloc[-1:].to_parquet(path)
+    for maker, tables in readers:
+        if name in tables:
+            with suppress(LineposeError):
+                made = maker(PlatformResults("made_up", made_up.platform(), folder, 5.0))
+                assert not isinstance(made, str) or "nan" not in made
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (lambda table: table.iloc[:0], "no rows"),
+        (lambda table: table.drop(columns="error_px"), "no column error_px"),
+        (lambda table: table.assign(error_px=float("nan")), "24 of 24 numbers of error_px not finite"),
+        (lambda table: table[table["stage"] != "inliers"], "no rows"),
+    ],
+)
+def test_a_spoilt_result_is_named_with_what_is_wrong(tmp_path, spoil, told):
+    made_up.write_results(tmp_path)
+    table = pd.concat([made_up.residuals(), made_up.residuals().iloc[:8].assign(stage="all")])
+    spoil(table).to_parquet(tmp_path / "residuals.parquet")
+    with pytest.raises(LineposeError, match=told):
+        summarise(PlatformResults("made_up", made_up.platform(), tmp_path, 5.0))
+
+
+def test_a_chain_that_stands_still_is_told_rather_than_drawn():
+    with pytest.raises(LineposeError, match="the same value of r_x_m in all 320 rows"):
+        usable_chain(made_up.samples().assign(r_x_m=0.19))
+
+
+@pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in NOT_MADE], ids=lambda e: e.name)
 def test_text_can_be_read_where_the_figure_is_printed_at_half_a_page(drawn, entry):
     folder, _ = drawn
     figure = entry.draw(PlatformResults("made_up", made_up.platform(), folder, 5.0))
@@ -92,8 +151,10 @@ def test_pictures_have_the_stated_size(drawn):
 
 _REDRAW = """
 import sys
+from contextlib import suppress
 from pathlib import Path
 from linepose.figures.render import render_figures
+from linepose.figures.checks import usable_chain
 from linepose.figures.results import PlatformResults
 sys.path.insert(0, sys.argv[1])
 from unit import made_up

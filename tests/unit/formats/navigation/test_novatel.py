@@ -32,6 +32,7 @@ def test_novatel_angles_are_ours():
     )
 
 
+@pytest.mark.devices
 def test_no_message_of_the_real_log_is_lost(samples):
     log = read_messages(samples / "novatel" / "ins1.gps")
     assert {name: len(rows) for name, rows in log.rows.items()} == {"INSPVA": 243, "INSSTDEV": 29}
@@ -43,6 +44,7 @@ def test_no_message_of_the_real_log_is_lost(samples):
     assert {name: len(rows) for name, rows in other.rows.items()} == {"INSPVA": 62, "INSPVAX": 6}
 
 
+@pytest.mark.devices
 def test_real_log_says_what_the_vendors_driver_made_of_it(samples):
     """The driver's bag: orientation after REP-103 from the last pose before each IMU message, and its sigmas."""
     from rosbags.highlevel import AnyReader
@@ -81,6 +83,7 @@ def test_real_log_says_what_the_vendors_driver_made_of_it(samples):
     np.testing.assert_array_equal(record.covariances.time_us, gps_us + (315_964_800 - 18) * 1_000_000)
 
 
+@pytest.mark.devices
 def test_undulation_brings_both_kinds_to_one_height(samples):
     origin = (51.15044, -114.03066, 1080.0)
     heights = [
@@ -100,7 +103,7 @@ def test_short_and_long_form_of_one_pose_count_once(tmp_path, drive):
 def test_poses_before_alignment_are_left_out(tmp_path, drive, caplog):
     messages = [novatel_writer.pva("INSPVAS", drive, row, True, status=1 if row < 3 else 3) for row in range(10)]
     (tmp_path / "a.gps").write_bytes(b"".join(messages))
-    with caplog.at_level(logging.WARNING):
+    with caplog.at_level(logging.WARNING, logger="linepose"):
         record = read_navigation(section("a.gps"), tmp_path)
     np.testing.assert_array_equal(record.log.time_us, drive.time_us[3:10])
     assert "3 poses without an INS solution are left out" in caplog.text
@@ -112,7 +115,7 @@ def test_what_is_no_message_is_told(tmp_path, drive, caplog):
     broken[40] ^= 1  # its CRC no longer fits
     content = b"".join([*messages[:4], bytes(broken), *messages[5:], messages[0][:50]])
     (tmp_path / "a.gps").write_bytes(content)
-    with caplog.at_level(logging.WARNING):
+    with caplog.at_level(logging.WARNING, logger="linepose"):
         record = read_navigation(section("a.gps"), tmp_path)
     assert len(record.log.time_us) == 9
     assert f"{len(broken) + 50} bytes are no whole message" in caplog.text
@@ -141,6 +144,7 @@ def test_log_without_poses_is_one_line(tmp_path, drive, content, told):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.devices
 def test_a_bag_of_the_driver_without_fixes_is_told(samples):
     with pytest.raises(InputError, match=r"found 0 topics of sensor_msgs/msg/NavSatFix.*the bag holds /gps/imu"):
         read_navigation(RosbagSection(format="rosbag", file="novatel/ins1.bag"), samples)

@@ -1,0 +1,131 @@
+"""Scans, their time stamps and labels, checked without a look at any picture."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import yaml
+
+from linepose.check.finding import Level
+from linepose.check.platform import check_platform
+from linepose.config.new_platform import NewPlatform, write_platform
+from linepose.config.new_project import make_project
+from linepose.config.platform import load_platform
+
+from ..recorded_files import write_scan_files
+from .conftest import CONFIG
+
+N_SCANS = 10
+
+
+@pytest.fixture(scope="module")
+def clean_scans(tmp_path_factory) -> Path:
+    root = tmp_path_factory.mktemp("scans")
+    make_project(root, "mine")
+    hand = (0.2, 0.0, -0.8), (-56.0, 0.0, -90.0), 323.0
+    new = NewPlatform("mine", 8.2e-3, 7.407407407e-6, 648, *hand, source="scans", navigation="navigation.parquet")
+    write_platform(root / "config" / "platforms", new)
+    write_scan_files(root / "data" / "mine", load_platform(CONFIG / "platforms", "ladybird-sim"), N_SCANS)
+    return root
+
+
+@pytest.fixture
+def scans(clean_scans, tmp_path) -> Path:
+    """A copy that may be spoilt."""
+    return Path(shutil.copytree(clean_scans, tmp_path / "project"))
+
+
+def settings(root, **changes):
+    path = root / "config" / "platforms" / "mine.yaml"
+    values = yaml.safe_load(path.read_text())
+    for section, change in changes.items():
+        values[section].update(change)
+    path.write_text(yaml.safe_dump(values))
+
+
+def in_gps_time(root):
+    for path in (root / "data" / "mine" / "scans").glob("*-times.csv"):
+        (pd.read_csv(path) + 18_000_000).to_csv(path, index=False)
+
+
+def other_width(root):
+    settings(root, camera={"n_pixels": 640, "principal_point_px": 319.0})
+
+
+def cut_picture(root):
+    with (root / "data" / "mine" / "scans" / "observation-03.bil").open("r+b") as data:
+        data.truncate(1000)
+
+
+def no_stamps(root):
+    (root / "data" / "mine" / "scans" / "observation-02-times.csv").unlink()
+
+
+def labels(root, change):
+    path = root / "data" / "mine" / "labels.csv"
+    change(pd.read_csv(path)).to_csv(path, index=False)
+
+
+def beyond_the_end(root):
+    labels(root, lambda table: table.assign(line=table["line"].where(table.index != 4, 1e6)))
+
+
+def one_unlabelled(root):
+    labels(root, lambda table: table[table["observation"] != 7])
+
+
+def few_labels(root):
+    labels(root, lambda table: table[(table["observation"] != 7) | (table["point"] < 2)])
+
+
+def rare_log(root):
+    path = root / "data" / "mine" / "navigation.parquet"
+    pd.read_parquet(path)[::100].to_parquet(path, index=False)
+
+
+def short_log(root):
+    path = root / "data" / "mine" / "navigation.parquet"
+    table = pd.read_parquet(path)
+    table[: len(table) // 2].to_parquet(path, index=False)
+
+
+PLANTED = {
+    in_gps_time: (Level.ERROR, "conventions", "GPS", "subtract 18 s"),
+    other_width: (Level.ERROR, "scans", "648 pixels a line, camera.n_pixels is 640", "n_pixels: 648"),
+    cut_picture: (Level.ERROR, "scans", "observation-03.bil.*truncated", "restore"),
+    no_stamps: (Level.ERROR, "scans", "observation-02-times.csv", "beside the scan"),
+    beyond_the_end: (Level.ERROR, "labels", "observation 1, point 4, line 1e\\+06", "lines count from 0"),
+    one_unlabelled: (Level.WARNING, "labels", "scan 7: no label", "left_out"),
+    few_labels: (Level.WARNING, "labels", "observation 7: fewer than 4 points", "label more"),
+    rare_log: (Level.ERROR, "time", "a pose every 1 s", "maximum_pose_gap_s"),
+    short_log: (Level.ERROR, "time", "s outside the navigation log", "complete the navigation log"),
+}
+
+
+def test_clean_scans_pass(clean_scans):
+    report = check_platform("mine", clean_scans)
+    assert report.of(Level.ERROR) == ()
+    told = " ".join(finding.found for finding in report.of(Level.OK))
+    assert "10 scans of 648 pixels, a time stamp for each line" in told
+    assert "150 points in 10 observations" in told
+    assert "none explains the data better" in told
+    assert len(report.predicted) == 6
+
+
+@pytest.mark.parametrize("plant", PLANTED, ids=lambda plant: plant.__name__)
+def test_planted_mistake_is_named(scans, plant):
+    plant(scans)
+    level, subject, found, advice = PLANTED[plant]
+    mine = [f for f in check_platform("mine", scans).of(level) if f.subject == subject and re.search(found, f.found)]
+    assert len(mine) == 1
+    assert re.search(advice, mine[0].advice)
+
+
+def test_points_to_be_detected_are_left_to_the_run(scans):
+    settings(scans, source={"points": "detection"})
+    report = check_platform("mine", scans)
+    assert report.level == Level.OK
+    assert report.predicted == ()
+    assert any("without labels" in finding.found for finding in report.findings)
