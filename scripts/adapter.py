@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from linepose.errors import LineposeError
+from linepose.orphan import end_with
 
 _HUSHED = ("numba", "matplotlib", "fontTools", "PIL")
 
@@ -17,7 +18,9 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     """Run a stage: its messages go to the rule's log and to the terminal; a fault ends the job with one line.
 
     `job` is the `snakemake` object of the script. Tracebacks of unforeseen faults go to the log and the terminal.
+    When Snakemake is killed the job ends too, or it would be in the way of the run that goes on.
     """
+    end_with(os.getppid())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(job.threads))
     log = logging.getLogger(f"linepose.{job.rule}")
     logging.basicConfig(

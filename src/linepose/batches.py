@@ -9,23 +9,21 @@ import json
 import multiprocessing
 import os
 import shutil
-import threading
-import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import numba
 import pandas as pd
 import pyarrow as pa
 from tqdm import tqdm
 
+from linepose.orphan import end_with
 from linepose.storage import read_table, write_table
 
 Task = Callable[[str], pd.DataFrame]
 
-_LOOK_AFTER_PARENT_S: Final = 1.0
 _task: Task | None = None
 
 
@@ -87,14 +85,7 @@ def _begin(task: Task, parent: int) -> None:
     global _task
     _task = task
     numba.set_num_threads(1)
-    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
-
-
-def _end_with(parent: int) -> None:
-    """End this process when its parent is gone: a killed parent cannot tell its children."""
-    while os.getppid() == parent:
-        time.sleep(_LOOK_AFTER_PARENT_S)
-    os._exit(1)
+    end_with(parent)
 
 
 def _run(name: str) -> pd.DataFrame:

@@ -186,6 +186,11 @@ class _InMemory:
     calibration: Calibration
 
     @property
+    def name(self) -> str:
+        """What messages call it."""
+        return "calibration"
+
+    @property
     def threshold_px(self) -> float:
         return self.calibration.threshold_px
 

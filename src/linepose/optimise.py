@@ -143,16 +143,16 @@ def _climb(likelihood: Likelihood, first: Floats, centre: Floats, half_width: Fl
 def laplace_covariance(likelihood: Likelihood, optimum: ArrayLike) -> Floats:
     """Covariance (P, P) from the curvature of -log L at its minimum (P,).
 
-    Central differences twice: first along the parameters with a step of 1e-6 (of parameters beyond the pose, a small
-    part of their prior's sigma), good for a fraction of a per cent, then
-    along the principal axes that this gave with a hundredth of each axis's sigma. There the rounding error is 1e-9 and
-    the truncation error 1e-4 of the fourth derivative's share; along the parameters themselves such a step would leave
-    the minimum's neighbourhood, because they are strongly correlated.
+    Central differences twice: first along the parameters, the pose's with a step of 1e-5 and each other with a
+    hundredth of its scatter (1e-5 of a pixel would drown in rounding), good for a fraction of a per cent;
+    then along the principal axes that this gave with a hundredth of each axis's sigma. There the rounding error is
+    1e-9 and the truncation error 1e-4 of the fourth derivative's share; along the parameters themselves such a step
+    would leave the minimum's neighbourhood, because they are strongly correlated.
     Raises EstimationError where the likelihood is undefined, or the curvature is not positive definite: a direction
     that the data leave open.
     """
     parameters = np.asarray(optimum, dtype=float)
-    axes = np.diag(likelihood.scatter(1e-6, 1e-6))
+    axes = 1e-2 * np.diag(likelihood.scatter(1e-3, 1e-3))
     for scale, lowest in ((1e-2, 0.0), (1.0, 0.1 * 1e-2**2)):  # the second time each curvature is about 1e-2 squared
         curvature, directions = np.linalg.eigh(_hessian(likelihood, parameters, axes))
         if curvature[0] <= lowest:

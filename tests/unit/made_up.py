@@ -9,7 +9,9 @@ from linepose import experiment_schemas, result_schemas
 from linepose.config.platform import Platform
 from linepose.experiments.basin import START_COLUMNS, Region, summarise
 from linepose.experiments.clock_offset import CORRELATION_COLUMNS
+from linepose.experiments.consistency import summarise_consistency
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
+from linepose.experiments.noise_models import EXTRA_PARAMETERS
 from linepose.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.residual_tables import POINT_COVARIANCE_COLUMNS
@@ -27,6 +29,7 @@ PLATFORM = {
     "camera": {"focal_length_m": 8.2e-3, "pixel_pitch_m": 7.4e-6, "n_pixels": 648, "principal_point_px": 323.0},
     "hand_measured": {"position_m": [0.2, 0.0, -0.8], "euler_deg": [-56.0, 0.0, -90.0]},
     "source": {"kind": "labelled_views", "dataset": "made_up"},
+    "experiments": {"noise_models": {}},
     "outline": {
         "side": {"lines": [[[-1.0, 0.5], [1.0, 0.5], [0.0, -0.7], [-1.0, 0.5]]], "circles": [[0.5, 0.7, 0.2]]},
         "front": {"lines": [[[-0.7, 0.5], [0.7, 0.5]]]},
@@ -268,6 +271,70 @@ def clock_offset() -> pd.DataFrame:
     return pd.DataFrame([row])
 
 
+def noise_models() -> pd.DataFrame:
+    """Three models on two sets: the published one is off by 0.14 m to the left, the robust one 2 sigmas away."""
+    rows = []
+    for model, moved in (("published", -0.14), ("shared", 0.0), ("robust", 0.02)):
+        for name, count in (("all", 6), ("inliers", 4)):
+            pose = OPTIMUM + np.array([0.0, moved, 0.0, 0.0, 0.0, 0.0])
+            levels = {"shared_level": 0.5, "white_level": 0.03, "pixel_level": 2.3}
+            known = model != "published"
+            rows.append(
+                {
+                    "noise_model": model,
+                    "set": name,
+                    "n_observations": count,
+                    "observations": "1 2 3 4",
+                    **dict(zip(POSE_COLUMNS, pose, strict=True)),
+                    **dict(zip(SIGMA_COLUMNS, SIGMA, strict=True)),
+                    **dict.fromkeys(EXTRA_PARAMETERS, 0.1 if known else np.nan),
+                    **{
+                        f"{level}{end}": factor * value if known else np.nan
+                        for level, value in levels.items()
+                        for end, factor in (("", 1.0), ("_low", 0.8), ("_high", 1.25))
+                    },
+                    "mahalanobis": 2.1 if model == "robust" else 0.0,
+                }
+            )
+    same = {"neg_log_likelihood": 1.0, "n_evaluations": 9, "effective_sample_size": 3000.0, "split_r_hat": 1.005}
+    same |= {"distance_m": 0.1, "angle_rad": 0.01, "warning": ""}
+    return pd.DataFrame(rows).assign(**same, position_error_m=np.nan, rotation_error_rad=np.nan, error_in_sigmas=np.nan)
+
+
+def identifiability() -> pd.DataFrame:
+    """The focal length is what the data say least of."""
+    names = (*POSE_COLUMNS[:3], "roll_rad", "pitch_rad", "yaw_rad", *EXTRA_PARAMETERS)
+    direction = np.array([0.3, *[0.0] * 9, -0.95])
+    table = pd.DataFrame({"parameter": names, "prior_sigma": 1.0, "posterior_sigma": np.linspace(0.1, 0.9, 11)})
+    table = table.assign(shrinkage=1 - table["posterior_sigma"] ** 2, weakest_direction=direction)
+    return table.assign(weakest_shrinkage=0.1, weakest_in_words="the focal length against r_x")
+
+
+def weights() -> pd.DataFrame:
+    """Observation 6 has the lowest weight, point 2 of observation 1 the lowest of points."""
+    observation, point = (grid.ravel() for grid in np.meshgrid(np.arange(1, 7), np.arange(4), indexing="ij"))
+    own = np.where((observation == 1) & (point == 2), 0.05, 1.1)
+    table = pd.DataFrame({"observation": observation, "point": point, "point_weight": own})
+    return table.assign(view_weight=1.3 - 0.2 * observation, removed=observation > 4)
+
+
+def consistency() -> pd.DataFrame:
+    """Forty halves and one pair: 4 sigmas apart under the published model, 2.5 under the shared one."""
+    halves = splits().drop(columns=["split", "mahalanobis"]).iloc[0].to_dict()
+    rows = [
+        {"noise_model": model, "comparison": name, "split": index, **halves, "mahalanobis": middle + 0.02 * index}
+        for model, middle in (("published", 4.0), ("shared", 2.5))
+        for name, count in (("random halves of made-up", 40), ("made-up against other", 1))
+        for index in range(count)
+    ]
+    return pd.DataFrame(rows)
+
+
+def consistency_summary() -> pd.DataFrame:
+    """What these distances come to."""
+    return summarise_consistency(consistency())
+
+
 TABLES = {
     "prior": (prior, experiment_schemas.PRIOR),
     "clock_offset": (clock_offset, experiment_schemas.CLOCK_OFFSET),
@@ -286,6 +353,11 @@ TABLES = {
     "splits": (splits, experiment_schemas.SPLITS),
     "leave_one_out": (leave_one_out, experiment_schemas.LEAVE_ONE_OUT),
     "uncertainty": (uncertainty, experiment_schemas.UNCERTAINTY),
+    "noise_models": (noise_models, experiment_schemas.NOISE_MODELS),
+    "identifiability": (identifiability, experiment_schemas.IDENTIFIABILITY),
+    "weights": (weights, experiment_schemas.WEIGHTS),
+    "consistency": (consistency, experiment_schemas.CONSISTENCY),
+    "consistency_summary": (consistency_summary, experiment_schemas.CONSISTENCY_SUMMARY),
 }
 
 

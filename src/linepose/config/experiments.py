@@ -117,7 +117,7 @@ class NoiseModelsSection(Section):
         description="Platform files with other views of the same pattern by the same camera, such as the forward "
         "passes; they are run as far as the outlier removal.",
     )
-    n_splits: NonNegativeInt = Field(200, description="Random splits of each platform's accepted observations.")
+    n_splits: PositiveInt = Field(200, description="Random splits of each platform's accepted observations.")
     robust_steps: int = Field(
         400, ge=4, description="Steps kept of the robust model's chains, ten times as dear as the shared model's."
     )

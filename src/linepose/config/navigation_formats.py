@@ -222,7 +222,11 @@ def _brought_section(value: Any) -> NavigationFormatSection:
     if not isinstance(value.get("format"), str):
         expected = f"one of {', '.join(SECTIONS)}"
         raise InputError("source.navigation.format", repr(value.get("format")), expected, "add or correct it")
-    return validated(brought_format(value["format"]).section, value, "source.navigation")
+    try:
+        return validated(brought_format(value["format"]).section, value, "source.navigation")
+    except InputError as error:
+        place = error.place.replace("source.navigation: ", "source.navigation.")
+        raise InputError(place, error.found, error.expected, error.remedy) from None
 
 
 _BROUGHT_SCHEMA: Final = {

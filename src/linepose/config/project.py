@@ -27,6 +27,11 @@ class Project:
     unavailable: tuple[str, ...] = ()
 
     @property
+    def covered(self) -> list[str]:
+        """Names of the platforms that the coverage study simulates."""
+        return self.study.coverage.platforms or [name for name in self.simulated if name in self.study.platforms]
+
+    @property
     def simulated(self) -> list[str]:
         """Names of the platforms with a known truth."""
         return [name for name, platform in self.platforms.items() if platform.simulation is not None]
@@ -70,6 +75,14 @@ def load_project(
     for platform in list(platforms.values()):
         for name in platform.experiments.other_platforms():
             platforms.setdefault(name, load_platform(root / study.platforms_folder, name))
+    for name in study.coverage.platforms:
+        if name not in study.platforms or platforms[name].simulation is None:
+            raise InputError(
+                "config/config.yaml: coverage.platforms",
+                f"{name}, not a simulated platform of this study",
+                "names under `platforms` whose file has a simulation",
+                "name it there, or leave the list empty for all of them",
+            )
     datasets = {name: load_dataset(root / sums) for name, sums in study.datasets.items()}
     searched = [root / folder for folder in study.data_folders]
     folders = {}

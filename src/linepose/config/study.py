@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
+from linepose.config.coverage import CoverageSection
 from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
 from linepose.likelihood.names import sampling_section
@@ -98,6 +99,7 @@ class Study(Section):
     independence_sampling: IndependenceSamplingSection = Field(
         IndependenceSamplingSection(), description="MCMC of the noise models shared and robust."
     )
+    coverage: CoverageSection = Field(CoverageSection(), description="Coverage study; not part of the main job.")
 
     def sampling_of(self, noise_model: str) -> SamplingSection | IndependenceSamplingSection:
         """The sampling section for a noise model."""

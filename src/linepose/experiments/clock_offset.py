@@ -29,7 +29,9 @@ _logger = logging.getLogger(__name__)
 CORRELATION_COLUMNS: Final = tuple(f"correlation_{name.rsplit('_', 1)[0]}" for name in (*POSE_COLUMNS, *TURN_NAMES))
 TOLD_APART: Final = 0.75  # of the shrinkage: the sigma is half of what it was before any data
 MOST_COMMON: Final = 0.98  # correlation with the whole pose, where a sigma is five times what it is with the pose known
-NOTABLE: Final = 2.0  # sigmas from zero
+LINKED: Final = 0.9  # correlation with the pose, from which it is the pose that hides the offset, and not the noise
+NOTABLE: Final = 3.0  # sigmas from zero
+_INSIDE: Final = 0.75  # of the largest offset, five times the walkers' scatter from it
 _LARGEST: Final = 0.9  # of the largest offset, where the search has run into its end
 _WORDS: Final = {
     "r_x": "forward lever arm",
@@ -60,23 +62,25 @@ def estimate_clock_offset(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The offset and the pose together from a start pose (6,): a table of one row, and the samples behind its sigmas.
 
-    The offset's sigma is the larger of the samples' and of leaving out observations. Columns as in
+    `correlation_pose` is that of the curvature, which no limit of the offset hides; 1 where the curvature leaves a
+    direction open. The offset's sigma is the larger of the samples' and of leaving out observations. Columns as in
     `experiment_schemas.CLOCK_OFFSET`; a sigma from the curvature is NaN where the data leave a direction open.
     """
     optimum = optimise(likelihood, start, search)
-    laplace_sigma, view_sigma = float("nan"), float("nan")
+    laplace_sigma, view_sigma, with_pose = float("nan"), float("nan"), 1.0
     try:
         curvature = laplace_covariance(likelihood, optimum.parameters)
-        laplace_sigma = float(np.sqrt(curvature[-1, -1]))
+        laplace_sigma, with_pose = float(np.sqrt(curvature[-1, -1])), correlation_with_all(curvature)
         view_sigma = float(jackknife_sigma(likelihood, optimum.parameters, curvature)[-1])
     except EstimationError:
         _logger.info("the data leave the clock offset or the pose open at the optimum: no sigma from the curvature")
-    chain = sample(likelihood, optimum.parameters, seed, settings)
+    middle = optimum.parameters.copy()  # of the walkers, none of which may start beyond the largest offset
+    middle[-1] = np.clip(middle[-1], -_INSIDE * likelihood.maximum_s, _INSIDE * likelihood.maximum_s)
+    chain = sample(likelihood, middle, seed, settings)
     names, covariance = likelihood.parameter_names, chain.covariance()
     offset_s, sampled_sigma_s = float(optimum.parameters[-1]), float(chain.sigma()[-1])
     sigma_s = float(np.nanmax([sampled_sigma_s, view_sigma]))
     correlation = correlations(optimum.parameters, covariance, names)
-    with_pose = correlation_with_all(covariance)
     shrinkage = 1 - sigma_s**2 / (likelihood.maximum_s**2 / 3)
     pose = optimum.parameters[:N_PARAMETERS]
     moved = float(mahalanobis_distance(pose, without.pose, without.covariance))
@@ -145,13 +149,16 @@ class Told:
         if not self.is_told_apart():
             if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= TOLD_APART:
                 return f"The clock offset is at the end of its range: {found} of ±{1e3 * self.maximum_s:g} ms."
+            if self.correlation_pose < LINKED:
+                return (
+                    f"The data do not tell the clock offset: {found}, where ±{1e3 * self.maximum_s:g} ms were allowed."
+                )
             return (
                 f"The clock offset cannot be told from the pose: {found}, where ±{1e3 * self.maximum_s:g} ms were "
-                f"allowed; its correlation with the {self._partner()} is {self._correlation():+.2f}, with the whole "
-                f"pose {self.correlation_pose:.3f}."
+                f"allowed; it goes with the {self._partner()}, correlation {self._correlation():+.2f}."
             )
         if abs(self.offset_s) < NOTABLE * self.sigma_s:
-            return f"The clocks agree: the offset is {found}."
+            return f"No clock offset shows: {found} is less than {NOTABLE:g} sigmas."
         which = "behind" if self.offset_s > 0 else "ahead of"
         return (
             f"The camera's clock is {which} the navigation's: the offset is {found}. With it the pose moves by "
@@ -163,6 +170,10 @@ class Told:
         if not self.is_told_apart():
             if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= TOLD_APART:
                 return "Raise experiments.clock_offset.maximum_s, and check in which time scale each clock runs."
+            if self.correlation_pose < LINKED:
+                return (
+                    "Take the pose without the offset. Faster passes, more of them, or better navigation would tell it."
+                )
             return (
                 "Take the pose without the offset, and add passes in the other direction and at other speeds: they "
                 "move the view the other way for the same offset."

@@ -16,6 +16,7 @@ from scipy.stats import chi, kstest
 
 from linepose.batches import batch_ranges
 from linepose.camera import Camera
+from linepose.errors import InputError
 from linepose.experiments.estimate import Estimate, estimate_nearby
 from linepose.experiments.repeatability import consistency, split_numbers
 from linepose.likelihood.base import Likelihood
@@ -27,6 +28,7 @@ from linepose.pose import N_PARAMETERS
 from linepose.rotations import Floats
 
 NAMED_SUBSETS: Final = "the two named subsets"
+MINIMUM_OBSERVATIONS: Final = 4
 
 
 @dataclass(frozen=True)
@@ -52,12 +54,16 @@ class Comparisons:
     search: Search = field(default_factory=Search)
 
     def parts(self, n_splits: int, batch_size: int) -> dict[str, Callable[[], pd.DataFrame]]:
-        """All the work in parts that do not depend on each other, by a name that is a file's."""
+        """All the work in parts that do not depend on each other, by a name that is a file's.
+
+        Raises InputError for a group of too few observations for two halves.
+        """
         work: dict[str, Callable[[], pd.DataFrame]] = {}
         for noise_model, groups in self.groups.items():
             if len(groups) > 1 or self.subsets:
                 work[f"{noise_model}-pairs"] = partial(self.pairs, noise_model)
-            for name in groups:
+            for name, group in groups.items():
+                _check_halves(name, group.likelihood.survey.n_observations)
                 for place, indices in batch_ranges(n_splits, batch_size).items():
                     work[f"{noise_model}-{name}-{place}"] = partial(self.random_halves, noise_model, name, indices)
         return work
@@ -92,6 +98,16 @@ class Comparisons:
     def _estimate(self, group: Group, numbers: ArrayLike) -> Estimate:
         selected = group.likelihood.select([int(number) for number in np.asarray(numbers)])
         return estimate_nearby(selected, group.optimum, self.start, self.search)
+
+
+def _check_halves(name: str, n_observations: int) -> None:
+    if n_observations < MINIMUM_OBSERVATIONS:
+        raise InputError(
+            f"experiments.noise_models: {name}",
+            f"{n_observations} accepted observations",
+            f"at least {MINIMUM_OBSERVATIONS}, two in each half",
+            "leave the experiment out, or raise outliers.threshold_px",
+        )
 
 
 def _compared(noise_model: str, comparison: str, split: int, first: Estimate, second: Estimate) -> dict[str, object]:

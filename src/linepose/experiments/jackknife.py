@@ -13,13 +13,15 @@ from linepose.likelihood.base import Likelihood
 from linepose.rotations import Floats
 
 _STEP: Final = 0.1  # sigmas
+_LEAST: Final = 0.3  # of the whole's curvature
 
 
 def jackknife_sigma(likelihood: Likelihood, optimum: ArrayLike, covariance: ArrayLike) -> Floats:
     """Sigma of each parameter (P,) at the optimum (P,) of all observations, of which (P, P) is the covariance.
 
     Each observation less moves the optimum by one Newton step, along axes in which the covariance is the identity.
-    Raises EstimationError where what remains leaves a direction open.
+    There the curvature of the rest is about one; where it is bent below `_LEAST`, as a level's may be, the step is that
+    of `_LEAST`. Raises EstimationError where the likelihood is undefined nearby.
     """
     centre = np.asarray(optimum, dtype=float)
     axes = np.linalg.cholesky(np.asarray(covariance, dtype=float))
@@ -28,9 +30,8 @@ def jackknife_sigma(likelihood: Likelihood, optimum: ArrayLike, covariance: Arra
     for left_out in numbers:
         reduced = likelihood.select([number for number in numbers if number != left_out])
         gradient, hessian = derivatives(reduced, centre, axes)
-        if np.linalg.eigvalsh(hessian)[0] <= 0:
-            raise EstimationError(f"jackknife: without observation {left_out} a direction of the pose is open")
-        without.append(centre - axes @ np.linalg.solve(hessian, gradient))
+        curvature, directions = np.linalg.eigh(hessian)
+        without.append(centre - axes @ directions @ (directions.T @ gradient / np.maximum(curvature, _LEAST)))
     spread = np.sum((np.array(without) - np.mean(without, axis=0)) ** 2, axis=0)
     return np.sqrt((len(numbers) - 1) / len(numbers) * spread)
 

@@ -1,21 +1,22 @@
 """Whether disjoint observations agree as the sigmas promise, under the published and the shared noise model."""
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from scipy.stats import chi
 
 from linepose.errors import InputError
 from linepose.figures.checks import usable_rows
 from linepose.figures.noise_models import COLOURS
-from linepose.figures.style import BLACK, WIDE_IN, blank_figure, styled
+from linepose.figures.style import BLACK, GREY, WIDE_IN, blank_figure, styled
 from linepose.pose import N_PARAMETERS
 
 _STYLES: Final = ("-", "--", "-.", ":")
 _MARKERS: Final = ("D", "v", "X", "P")
-_MOST: Final = 12.0  # sigmas shown: nothing beyond is a matter of degree
+_MOST: Final = 8.0  # sigmas shown: nothing beyond is a matter of degree
 
 
 @styled
@@ -26,35 +27,28 @@ def consistency(table: pd.DataFrame) -> Figure:
     `experiment_schemas.CONSISTENCY`.
     """
     rows = _known(table)
-    figure = blank_figure(WIDE_IN, 3.4)
+    figure = blank_figure(WIDE_IN, 4.2)
     axes = figure.add_subplot()
     shown = np.linspace(0, _MOST, 300)
-    axes.plot(shown, chi.cdf(shown, N_PARAMETERS), color=BLACK, linewidth=2.0, label="if the sigmas are right")
+    axes.plot(shown, chi.cdf(shown, N_PARAMETERS), color=BLACK, linewidth=2.0)
+    handles = [Line2D([], [], color=BLACK, linewidth=2.0, label="right sigmas")]
+    handles += [Line2D([], [], color=COLOURS[name], linewidth=2.4, label=name) for name in rows["noise_model"].unique()]
     halves, single = 0, 0
     for name, part in rows.groupby("comparison", sort=False):
         one = int(part["split"].max()) == 0
+        style: dict[str, Any] = (
+            {"marker": _MARKERS[single % 4], "linestyle": "none"} if one else {"linestyle": _STYLES[halves % 4]}
+        )
+        handles.append(Line2D([], [], color=GREY, label=str(name), **style))
         for model, distances in part.groupby("noise_model", sort=False)["mahalanobis"]:
-            label, colour = f"{model}, {name}", COLOURS[str(model)]
-            if one:
-                place = min(float(distances.iloc[0]), 0.985 * _MOST)
-                axes.plot(
-                    [place],
-                    [chi.cdf(place, N_PARAMETERS)],
-                    _MARKERS[single % 4],
-                    color=colour,
-                    markersize=6,
-                    label=label,
-                )
-            else:
-                ordered = np.sort(distances.to_numpy())
-                share = np.arange(1, len(ordered) + 1) / len(ordered)
-                style = _STYLES[halves % 4]
-                axes.step(ordered, share, where="post", color=colour, linestyle=style, label=label)
+            ordered = np.sort(np.minimum(distances.to_numpy(), 0.985 * _MOST))
+            share = chi.cdf(ordered, N_PARAMETERS) if one else np.arange(1, len(ordered) + 1) / len(ordered)
+            axes.plot(ordered, share, color=COLOURS[str(model)], drawstyle="steps-post", **style)
         single, halves = single + one, halves + (not one)
     axes.set(
         xlabel="Distance of the two poses (sigmas)", ylabel="Share of pairs below", xlim=(0, _MOST), ylim=(0, 1.02)
     )
-    figure.legend(loc="outside upper center", ncols=2)
+    figure.legend(handles=handles, loc="outside upper left", ncols=1)
     return figure
 
 

@@ -29,7 +29,7 @@ def noise_models(table: pd.DataFrame, hand_pose: Floats, true_pose: Floats | Non
     figure = blank_figure(WIDE_IN, 2 * (_ROOM_IN + _ROW_IN * len(sets)))
     panels = figure.subplots(2, 3, sharey=True).ravel()
     for index, panel in enumerate(panels):
-        panel.axvline(hand_pose[index], color=GREY, linestyle="--", linewidth=0.9, label="hand measured")
+        panel.axvline(hand_pose[index], color=GREY, linestyle="--", linewidth=0.9, label="by hand")
         if true_pose is not None:
             panel.axvline(true_pose[index], color="black", linewidth=0.9, label="truth")
         for place, model in enumerate(models):
@@ -43,7 +43,7 @@ def noise_models(table: pd.DataFrame, hand_pose: Floats, true_pose: Floats | Non
                 color=COLOURS[model],
                 markersize=3,
                 elinewidth=1.0,
-                label=f"{model} (± 2 sigmas)",
+                label=model,
             )
         panel.set_xlabel(_NAMES[index])
         panel.locator_params(axis="x", nbins=3)

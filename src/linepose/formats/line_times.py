@@ -104,7 +104,9 @@ def _first_file(names: list[str], scan: Path) -> Path:
         if (scan.parent / name).is_file():
             return scan.parent / name
     found = f"no {' or '.join(dict.fromkeys(names))} beside it"
-    raise InputError(str(scan), found, "its time stamps", "put the file there, or correct source.time_stamps")
+    raise InputError(
+        str(scan), found, "what its time stamps are made of", "put the file there, or correct source.time_stamps"
+    )
 
 
 def _rows(path: Path) -> list[str]:

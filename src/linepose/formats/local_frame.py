@@ -45,7 +45,8 @@ def projected_frame(crs: str) -> LocalFrame:
     except CRSError:
         projected = False
     if not projected:
-        raise InputError("crs", repr(crs), "a projected CRS, for example EPSG:32633", "correct or remove the key")
+        place, expected = "source.navigation.crs", "a projected CRS, for example EPSG:32633"
+        raise InputError(place, repr(crs), expected, "correct or remove the key")
     return LocalFrame(crs, None)
 
 
@@ -128,4 +129,4 @@ def _projection(crs: str) -> Proj:
     try:
         return Proj(crs)
     except (CRSError, ProjError):
-        raise InputError("crs", repr(crs), "a projected CRS", "correct or remove the key") from None
+        raise InputError("source.navigation.crs", repr(crs), "a projected CRS", "correct or remove the key") from None

@@ -19,6 +19,8 @@ class SharedArrays(NamedTuple):
     view_first (N + 1,): first line of each view, and L; line_view, line_point (L,): the view and the point of each;
     u_px (L,); position_m (L, 3); world_from_body (L, 3, 3); euler_axes (L, 3, 3): small rotation in the world by roll,
     pitch, yaw; covariance (L, 6, 6): as reported; shared_root (N, 6, 6): F with `F F^T` the view's mean covariance.
+    motion (L, 7): what the body moves (m, rad) while the point crosses one pixel, and how far along the line that is
+    allowed for (px); NaN where the body's motion does not matter.
     """
 
     view_first: NDArray[np.int64]
@@ -30,6 +32,7 @@ class SharedArrays(NamedTuple):
     euler_axes: Floats
     covariance: Floats
     shared_root: Floats
+    motion: Floats
 
 
 def observed_lines(survey: Survey) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -77,6 +80,7 @@ def shared_arrays(survey: Survey) -> tuple[SharedArrays, NDArray[np.int64]]:
         euler_axes=np.ascontiguousarray(rotations.small_rotation_by_euler(euler)),
         covariance=np.ascontiguousarray(covariance),
         shared_root=roots,
+        motion=np.full((len(row), 7), np.nan),
     )
     return arrays, points
 

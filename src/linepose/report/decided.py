@@ -7,6 +7,7 @@ import numpy as np
 from linepose.experiment_schemas import PRIOR
 from linepose.figures.results import PlatformResults
 from linepose.identifiability import WORDS
+from linepose.pose import N_PARAMETERS
 from linepose.report.sections import SectionOnPage, TableOnPage
 
 _WITH: Final = (
@@ -18,6 +19,8 @@ _WITHOUT: Final = (
     "it; below one half the tape measure knew that parameter better, and `prior: hand_measured` in the platform's file "
     "would help."
 )
+
+_OTHERS: Final = " Levels and intrinsics always have a prior, which is the noise model's and the camera's."
 
 
 def decided_section(results: PlatformResults) -> SectionOnPage | None:
@@ -36,13 +39,15 @@ def decided_section(results: PlatformResults) -> SectionOnPage | None:
         ]
         for _, row in table.iterrows()
     ]
-    heads = ["Parameter", "Estimate minus prior", "Sigma", "Prior's sigma", "Weight of the data", "Decided by"]
-    anchor = f"{results.name}-decided"
     counted_in = bool(table["prior_counted_in"].iloc[0])
+    known = ["Estimate minus prior", "Prior's sigma"] if counted_in else ["Estimate minus hand", "Sigma by hand"]
+    heads = ["Parameter", known[0], "Sigma", known[1], "Weight of the data", "Decided by"]
+    anchor = f"{results.name}-decided"
     title = "Data or prior" if counted_in else "Data or hand measurement"
     sentence = f"{_count(table['decided_by'])}."
     on_page = TableOnPage(f"{anchor}-table", title, sentence, heads, rows, folded=False)
-    return SectionOnPage(anchor, "What decided each parameter", _WITH if counted_in else _WITHOUT, [on_page])
+    text = (_WITH if counted_in else _WITHOUT) + (_OTHERS if len(table) > N_PARAMETERS else "")
+    return SectionOnPage(anchor, "What decided each parameter", text, [on_page])
 
 
 def _count(deciders: "np.ndarray | object") -> str:

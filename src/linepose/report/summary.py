@@ -29,6 +29,10 @@ class Results(Protocol):
     """The results of one platform, from files or from memory, as the verdict asks for them."""
 
     @property
+    def name(self) -> str:
+        """Of the platform, for messages."""
+
+    @property
     def threshold_px(self) -> float:
         """Mean error (px) below which an observation is accepted."""
 
@@ -134,7 +138,7 @@ def gather_evidence(results: Results, numbers: list[PoseNumber]) -> Evidence:
 
 
 def _accepted_stage(results: Results, name: str, schema: pa.Schema) -> pd.DataFrame:
-    return stage_rows(results.table(name, schema), "inliers", [], f"{name}.parquet")
+    return stage_rows(results.table(name, schema), "inliers", [], f"{results.name}/{name}.parquet")
 
 
 def tilt_spread_deg(survey: Survey) -> float:

@@ -98,7 +98,11 @@ def test_resonons_names_of_cubes_are_read(tmp_path):
     ("kind", "write", "told"),
     [
         ("csv", lambda d: None, r"raw_7-times.csv: found no such file"),
-        ("headwall", lambda d: None, r"raw_7.png: found no frameIndex_7.txt beside it, expected its time stamps; put"),
+        (
+            "headwall",
+            lambda d: None,
+            r"raw_7.png: found no frameIndex_7.txt beside it, expected what its time stamps are made of; put",
+        ),
         (
             "headwall",
             lambda d: frames(d / "frameIndex_7.txt", ["1\t2\t3"]),

@@ -249,6 +249,7 @@ def test_a_real_window_under_a_virtual_display(mouse, tmp_path):
 PERSON = """
 import itertools
 import sys
+import time
 from pathlib import Path
 
 from matplotlib import pyplot as plt
@@ -266,10 +267,11 @@ def count():
 
 def act(**keys):
     canvas = plt.gcf().canvas
-    widget, axes, height = canvas.get_tk_widget(), plt.gcf().axes[0], canvas.get_width_height()[1]
+    widget, axes = canvas.get_tk_widget(), plt.gcf().axes[0]
 
     def click(u, line):
         x, y = axes.transData.transform((u, line))
+        height = canvas.figure.bbox.height
         later = next(seconds) * 1000  # ms: else Tk takes two clicks in one place for a double one
         for kind in ("Button-1", "ButtonRelease-1"):
             widget.event_generate(f"<{kind}>", x=round(x), y=round(height - y), time=later)
@@ -281,7 +283,9 @@ def act(**keys):
         widget.update()
 
     def person():
-        widget.update()
+        for _ in range(20):  # until the window has its size
+            widget.update()
+            time.sleep(0.05)
         click(u0, line0)
         count()
         canvas.toolbar.zoom()

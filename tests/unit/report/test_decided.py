@@ -1,5 +1,6 @@
 """What the page says of priors and clocks."""
 
+import pandas as pd
 import pytest
 
 from linepose.experiment_schemas import CLOCK_OFFSET, PRIOR
@@ -32,13 +33,17 @@ def test_without_a_prior_the_page_says_what_it_would_add(tmp_path):
     section = decided_section(results_with(tmp_path, prior=(table, PRIOR)))
     assert "The data decided the pose alone" in section.text
     assert section.tables[0].sentence == "6 decided by data."
+    assert section.tables[0].heads[1] == "Estimate minus hand"
+    assert "Levels and intrinsics" not in section.text
 
 
 def test_levels_and_intrinsics_have_their_units(tmp_path):
     names = ["log_shared_level", "principal_point_px", "focal_length_m"]
-    table = made_up.prior().iloc[:3].assign(parameter=names, difference=[0.5, 1.5, 2e-5])
-    rows = decided_section(results_with(tmp_path, prior=(table, PRIOR))).tables[0].rows
-    assert [row[:2] for row in rows] == [
+    others = made_up.prior().iloc[:3].assign(parameter=names, difference=[0.5, 1.5, 2e-5])
+    table = pd.concat([made_up.prior(), others])
+    section = decided_section(results_with(tmp_path, prior=(table, PRIOR)))
+    assert "Levels and intrinsics always have a prior" in section.text
+    assert [row[:2] for row in section.tables[0].rows[6:]] == [
         ["shared level (logarithm)", "0.5000"],
         ["principal point (px)", "1.5000"],
         ["focal length (mm)", "0.0200"],

@@ -6,9 +6,12 @@ import pandas as pd
 import pytest
 
 from linepose import rotations
+from linepose.extraction.scans import read_scan
 from linepose.simulate import record
 from linepose.simulate.navigation_error import gauss_markov
 from linepose.simulate.projection import exact_projections
+from linepose.simulate.render import render
+from linepose.simulate.sensor import band_responses
 from linepose.simulate.settings import FaultSettings, GroundSettings
 from linepose.simulate.trajectory import body_poses, schedule
 
@@ -124,6 +127,20 @@ def test_survey_repeats_byte_for_byte_and_changes_with_the_seed(tmp_path, camera
     } == set(digests["first"])
     for changed in ("scans/observation-01.bil", "navigation.parquet", "labels.csv"):
         assert digests["first"][changed] != digests["other"][changed]
+
+
+def test_scan_of_many_bands_reads_back_as_the_light(tmp_path, camera, quick):
+    quickest = replace(quick.passes[0], speed_m_s=-1.0, duration_s=1.2)
+    many = replace(quick, passes=(quickest,), image=replace(quick.image, n_bands=244))
+    record.write_survey(tmp_path, camera, many)
+    intensity = read_scan(tmp_path / "scans" / "observation-01.hdr").intensity
+    white = many.image.full_scale_electrons
+    expected = 4095 * band_responses(244).mean() * render(camera, many, 1).light
+    # six sigmas of the mean of 244 bands' shot and read noise at full scale
+    assert intensity.shape == expected.shape
+    noise = 4095 / white * np.sqrt((white + many.image.read_noise_electrons**2) / 244)
+    np.testing.assert_allclose(intensity, expected, atol=6 * noise)
+    assert np.ptp(intensity) > 50 * noise
 
 
 def test_clock_offset_is_in_the_scan_times_alone(tmp_path, camera, quick):

@@ -139,10 +139,17 @@ def _fixes_and_imu(bag: Any, path: Path, section: RosbagSection) -> tuple[Poses,
         raise InputError(place, found, expected, "record the navigation system's own Imu topic, and name it")
     after = np.searchsorted(fixes, imu).clip(1, len(fixes) - 1)
     near = (fixes[after] - fixes[after - 1] <= section.maximum_fix_gap_s * 1e6) & (imu >= fixes[0]) & (imu <= fixes[-1])
+    if not near.any():
+        found = f"no message between two fixes at most {section.maximum_fix_gap_s:g} s apart"
+        expected, remedy = (
+            "fixes around the attitudes",
+            "raise source.navigation.maximum_fix_gap_s, or check the stamps",
+        )
+        raise InputError(place, found, expected, remedy)
     euler, place_of_fix = _euler(np.array(quaternion).reshape(-1, 4)[near], place), np.array(geodetic)
     at = np.stack([np.interp(imu[near], fixes, place_of_fix[:, axis]) for axis in range(3)], axis=-1)
     poses = Poses(imu[near], at, euler, place)
-    if not known or not turns.any() or not len(euler):
+    if not known or not turns.any():
         return poses, _none(place)
     row = nearest_rows(imu[near], fixes)
     jacobian = _by_orientation(euler[row], section)

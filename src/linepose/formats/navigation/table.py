@@ -1,5 +1,6 @@
 """Navigation format `table`: CSV or Parquet, its columns named in the platform file."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -19,6 +20,8 @@ from linepose.formats.local_frame import projected_frame, tangent_frame
 from linepose.formats.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
 from linepose.rotations import Floats
 
+_BRIEFLY: Final = 120
+_PARQUET: Final = {".parquet", ".pq"}
 _ENU_SIGMAS: Final = [1, 0, 2]  # standard deviations of east, north, up in the order north, east, down
 
 
@@ -69,7 +72,7 @@ class _Table:
         triples = (columns.position, columns.attitude, columns.sigma_position, columns.sigma_attitude)
         wanted = [columns.time, *([columns.week] if columns.week else []), *(one for t in triples if t for one in t)]
         try:
-            if path.suffix.lower() in {".parquet", ".pq"}:
+            if path.suffix.lower() in _PARQUET:
                 self.table = pq.read_table(path)
             else:
                 self.table = _read_csv(path, section)
@@ -94,7 +97,7 @@ class _Table:
             try:
                 return np.asarray(pc.cast(text, pa.timestamp("us", "UTC")).cast(pa.int64()).to_numpy())
             except pa.ArrowException as error:
-                found = " ".join(str(error).split())
+                found = _brief(error)
                 expected = "UTC such as 2026-05-01T12:00:00.25Z"
                 raise InputError(
                     f"{self.path}, {name}", found, expected, "correct source.navigation.time_scale"
@@ -118,13 +121,20 @@ class _Table:
     def _cast(self, name: str, kind: pa.DataType) -> pa.ChunkedArray:
         column = self.table[name]
         if column.null_count:
-            row = int(pc.index(pc.is_null(column), True).as_py()) + 1
+            has_heading = self.section.heading and self.path.suffix.lower() not in _PARQUET
+            row = int(pc.index(pc.is_null(column), True).as_py()) + 1 + has_heading
             raise InputError(f"{self.path}, row {row}, {name}", "an empty cell", "a value", "remove the row")
         try:
             return column.cast(kind)
         except pa.ArrowException as error:
-            found = " ".join(str(error).split())
-            raise InputError(f"{self.path}, {name}", found, f"values of {kind}", "mend the column") from None
+            what = "text" if pa.types.is_string(kind) else "whole numbers" if pa.types.is_integer(kind) else "numbers"
+            raise InputError(f"{self.path}, {name}", _brief(error), what, "mend the column") from None
+
+
+def _brief(error: Exception) -> str:
+    """The value that could not be read, where pyarrow names one, else its first words."""
+    named = re.search(r"string: ('.*?') as", str(error))
+    return named.group(1) if named else " ".join(str(error).split())[:_BRIEFLY]
 
 
 def _read_csv(path: Path, section: TableSection) -> pa.Table:

@@ -32,6 +32,7 @@ def test_novatel_angles_are_ours():
     )
 
 
+@pytest.mark.devices
 def test_no_message_of_the_real_log_is_lost(samples):
     log = read_messages(samples / "novatel" / "ins1.gps")
     assert {name: len(rows) for name, rows in log.rows.items()} == {"INSPVA": 243, "INSSTDEV": 29}
@@ -43,6 +44,7 @@ def test_no_message_of_the_real_log_is_lost(samples):
     assert {name: len(rows) for name, rows in other.rows.items()} == {"INSPVA": 62, "INSPVAX": 6}
 
 
+@pytest.mark.devices
 def test_real_log_says_what_the_vendors_driver_made_of_it(samples):
     """The driver's bag: orientation after REP-103 from the last pose before each IMU message, and its sigmas."""
     from rosbags.highlevel import AnyReader
@@ -81,6 +83,7 @@ def test_real_log_says_what_the_vendors_driver_made_of_it(samples):
     np.testing.assert_array_equal(record.covariances.time_us, gps_us + (315_964_800 - 18) * 1_000_000)
 
 
+@pytest.mark.devices
 def test_undulation_brings_both_kinds_to_one_height(samples):
     origin = (51.15044, -114.03066, 1080.0)
     heights = [
@@ -141,6 +144,7 @@ def test_log_without_poses_is_one_line(tmp_path, drive, content, told):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.devices
 def test_a_bag_of_the_driver_without_fixes_is_told(samples):
     with pytest.raises(InputError, match=r"found 0 topics of sensor_msgs/msg/NavSatFix.*the bag holds /gps/imu"):
         read_navigation(RosbagSection(format="rosbag", file="novatel/ins1.bag"), samples)

@@ -65,7 +65,7 @@ def test_example_of_the_page_reads_its_format(tmp_path, installed):
 
 
 def test_format_that_is_brought_is_closed_too(tmp_path, installed):
-    with pytest.raises(InputError, match=r"source.navigation.*fil: found an unknown key.*did you mean file"):
+    with pytest.raises(InputError, match=r"source.navigation.fil: found an unknown key.*did you mean file"):
         platform(tmp_path, {"format": "tum", "file": "a.txt", "fil": "b.txt"})
 
 

@@ -15,6 +15,7 @@ def section(**keys):
     return SbetSection(format="sbet", **({"file": "a.sbet"} | keys))
 
 
+@pytest.mark.devices
 def test_real_trajectory(samples):
     """PDAL's two records: their numbers, as another program prints them."""
     record = read_navigation(section(file="sbet/2-points.sbet", gps_week=1774), samples)
@@ -29,6 +30,7 @@ def test_real_trajectory(samples):
     )
 
 
+@pytest.mark.devices
 def test_real_trajectory_cut_by_a_byte_is_refused(samples):
     with pytest.raises(InputError, match=r"badfile.sbet: found 271 bytes, 1 whole records and 135 bytes more.*restore"):
         read_navigation(section(file="sbet/badfile.sbet", gps_week=1774), samples)

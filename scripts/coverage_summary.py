@@ -1,0 +1,30 @@
+"""Put the cells of the coverage study together: tables and figures."""
+
+from pathlib import Path
+
+import pandas as pd
+from adapter import stage
+
+with stage(snakemake) as log:
+    from linepose.coverage_schemas import COVERAGE, COVERAGE_SUMMARY, COVERAGE_SURVEYS
+    from linepose.experiments.coverage_summary import coverage_curve, coverage_summary, stated_probabilities
+    from linepose.figures import coverage as figures
+    from linepose.figures.style import save
+    from linepose.storage import read_table, whole_file, write_csv, write_table
+    from linepose.tables.coverage import coverage_table
+
+    cells = [read_table(path, COVERAGE_SURVEYS) for path in snakemake.input.cells]
+    surveys = pd.concat([cell.astype(cells[0].dtypes) for cell in cells], ignore_index=True)
+    curve, summary = coverage_curve(surveys, stated_probabilities()), coverage_summary(surveys)
+    write_table(surveys, snakemake.output.surveys, COVERAGE_SURVEYS)
+    write_table(curve, snakemake.output.coverage, COVERAGE)
+    write_table(summary, snakemake.output.summary, COVERAGE_SUMMARY)
+    write_csv(summary, snakemake.output.csv)
+    with whole_file(snakemake.output.table) as path:
+        path.write_text(coverage_table(summary), encoding="utf-8")
+    folder = Path(snakemake.output.figures)
+    save(figures.coverage(curve), folder / "coverage")
+    save(figures.errors(summary), folder / "errors")
+    for model in dict.fromkeys(surveys["noise_model"]):
+        save(figures.ranks(surveys, model), folder / f"ranks_{model}")
+    log.info("%d surveys in %d cells", len(surveys), len(summary))

@@ -1,0 +1,76 @@
+"""What holds for every noise model: names, defined answers to bad input, and that chi-square is near its freedom."""
+
+from typing import get_args
+
+import numpy as np
+import pytest
+from small_survey import CAMERA, POSE, Truth, make_survey, without
+
+from linepose.errors import LineposeError
+from linepose.likelihood.models import NOISE_MODELS, likelihood_of
+from linepose.likelihood.names import NoiseModelName
+from linepose.likelihood.shared import SharedLikelihood
+
+MODELS = pytest.mark.parametrize("noise_model", NOISE_MODELS)
+
+
+def test_every_name_has_a_model():
+    assert set(get_args(NoiseModelName)) == set(NOISE_MODELS)
+
+
+@MODELS
+@pytest.mark.parametrize("rank", [0, 1, 5])
+def test_zero_and_singular_covariances_have_a_likelihood_and_residuals(noise_model, rank):
+    survey = make_survey(5, 4, Truth(0.5), seed=3)
+    values, vectors = np.linalg.eigh(survey.covariance)
+    values[..., rank:] = 0.0
+    survey.covariance[:] = (vectors * values[..., None, :]) @ np.swapaxes(vectors, -1, -2)
+    likelihood = likelihood_of(noise_model, survey, CAMERA)
+    parameters = likelihood.start(POSE)
+    assert np.isfinite(likelihood.log_likelihood(parameters))
+    assert np.all(np.isfinite(likelihood.residuals(parameters).sigma_px))
+
+
+@MODELS
+def test_a_view_of_one_point_counts_as_one_line(noise_model):
+    survey = make_survey(5, 4, Truth(0.5), seed=3)
+    single = without(survey, (2, 0), (2, 1), (2, 2))
+    likelihood = likelihood_of(noise_model, single, CAMERA)
+    parameters = likelihood.start(POSE)
+    value = likelihood.log_likelihood(parameters)
+    absent = likelihood_of(noise_model, without(single, (2, 3)), CAMERA).log_likelihood(parameters)
+    assert np.isfinite(value)
+    assert value != absent
+    assert np.isfinite(likelihood.residuals(parameters).error_px).sum() == 17
+
+
+@MODELS
+def test_a_point_behind_the_camera_is_impossible_and_not_undefined(noise_model):
+    likelihood = likelihood_of(noise_model, make_survey(4, 3, Truth(), seed=6), CAMERA)
+    # turned about its x axis by half a turn, the camera looks away from the pattern
+    behind = likelihood.start([*POSE[:3], 2.2, 2.1, -1.0])
+    one, many = likelihood.log_likelihood(behind), likelihood.log_likelihoods(np.stack([behind, behind]))
+    assert one == -np.inf
+    assert np.array_equal(many, [-np.inf, -np.inf])
+
+
+@MODELS
+def test_an_observed_point_without_a_pose_is_refused(noise_model):
+    survey = make_survey(3, 2, Truth(), seed=6)
+    survey.position_m[1, 0] = np.nan
+    with pytest.raises(LineposeError):
+        likelihood_of(noise_model, survey, CAMERA)
+
+
+@pytest.mark.statistical
+def test_chi_square_is_near_its_degrees_of_freedom_at_the_truth():
+    total, freedom = 0.0, 0
+    for seed in range(20):
+        likelihood = SharedLikelihood(make_survey(6, 6, Truth(0.5, 0.1, 1.0), seed=seed), CAMERA)
+        parameters = likelihood.start(POSE)
+        parameters[6:9] = np.log([0.5, 0.1, 1.0])
+        chi_square, degrees = likelihood.chi_square(parameters)
+        assert degrees == 2 * 36 - 3 * 6 - 6
+        total += chi_square
+        freedom += degrees + 6  # the true pose is not fitted
+    assert abs(total - freedom) < 4 * np.sqrt(2 * freedom)

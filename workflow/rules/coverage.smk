@@ -1,0 +1,73 @@
+REGIMES = STUDY.coverage.regimes
+
+
+wildcard_constraints:
+    regime="[A-Za-z0-9-]+",
+    noise_model="[a-z]+",
+
+
+def covered_cells(_):
+    """Every platform, regime and noise model of the coverage study."""
+    cells = [
+        f"results/coverage/cells/{platform}/{regime}/{model}.parquet"
+        for platform in PROJECT.covered
+        for regime, section in REGIMES.items()
+        for model in section.noise_models
+    ]
+    if not cells:
+        raise WorkflowError(
+            "config/config.yaml: coverage: found no regime or no simulated platform, expected at least one of each; "
+            "add them under coverage.regimes and platforms"
+        )
+    return cells
+
+
+rule coverage_cell:
+    input:
+        compiled="results/compiled.txt",
+    output:
+        "results/coverage/cells/{platform}/{regime}/{noise_model}.parquet",
+    log:
+        "results/logs/coverage/{platform}/{regime}/{noise_model}.log",
+    conda:
+        "../../environment.yml"
+    threads: 64  # as many as there are
+    params:
+        platform=settings,
+        regime=lambda wildcards: REGIMES[wildcards.regime].model_dump(
+            mode="json", exclude={"noise_models"}
+        ),
+        study=STUDY.coverage.model_dump(
+            mode="json", include={"n_surveys", "n_draws", "seed"}
+        ),
+        batch_size=STUDY.coverage.batch_size,
+        work="results/coverage/work/{platform}-{regime}-{noise_model}",
+        code=[
+            source_digest("linepose.experiments.coverage"),
+            source_digest("linepose.batches"),
+        ],
+    script:
+        "../../scripts/coverage_cell.py"
+
+
+rule coverage:
+    input:
+        cells=covered_cells,
+    output:
+        surveys="results/coverage/surveys.parquet",
+        coverage="results/coverage/coverage.parquet",
+        summary="results/coverage/summary.parquet",
+        csv="results/coverage/summary.csv",
+        table="results/coverage/summary.md",
+        figures=directory("results/coverage/figures"),
+    log:
+        "results/logs/coverage/coverage.log",
+    conda:
+        "../../environment.yml"
+    params:
+        code=[
+            source_digest("linepose.tables.coverage"),
+            source_digest("linepose.figures.coverage"),
+        ],
+    script:
+        "../../scripts/coverage_summary.py"  # numba imports whatever is called coverage
