@@ -8,7 +8,7 @@ be trusted: below 0.7 they can. For a likelihood of some tenths of a millisecond
 """
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,7 @@ from linepose.errors import EstimationError
 from linepose.likelihood.base import Likelihood
 from linepose.rotations import Floats
 
-DEGREES_OF_FREEDOM: Final = 5.0
+DEGREES_OF_FREEDOM: Final = 5
 FIRST_SHARE: Final = 0.25  # of the draws, from which the proposal is fitted anew
 TRUSTED_SHAPE: Final = 0.7
 _PRIOR_SHAPE, _PRIOR_COUNT = 0.5, 10.0  # a weak prior of the shape, for short tails
@@ -64,7 +64,7 @@ def importance_samples(
     def log_density(draws: Floats) -> Floats:
         return likelihood.log_likelihoods(centre + draws @ factor.T)
 
-    first = multivariate_t(np.zeros(len(centre)), np.eye(len(centre)), df=DEGREES_OF_FREEDOM)
+    first: Any = multivariate_t(np.zeros(len(centre)), np.eye(len(centre)), df=DEGREES_OF_FREEDOM)
     draws = first.rvs(n_first, random_state=random)
     density = log_density(draws)
     second = _fitted(draws, density - first.logpdf(draws), first)
@@ -117,7 +117,7 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
     return (count * shape + _PRIOR_COUNT * _PRIOR_SHAPE) / (count + _PRIOR_COUNT), scale
 
 
-def _fitted(draws: Floats, log_ratios: Floats, before: multivariate_t) -> multivariate_t:
+def _fitted(draws: Floats, log_ratios: Floats, before: Any) -> Any:
     """A proposal with mean and covariance of the weighted draws; the one before where too few of them count."""
     log_weights, _ = pareto_smoothed(log_ratios)
     samples = WeightedSamples(draws, np.exp(log_weights), np.nan)

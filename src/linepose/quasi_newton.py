@@ -44,7 +44,9 @@ def descend(likelihood: Likelihood, start: ArrayLike) -> Optimum:
         return float(values[0]), (ahead - behind) / (2 * STEP)
 
     options = {"gtol": GRADIENT_TOLERANCE}
-    found = minimize(value_and_gradient, np.zeros(len(unit)), jac=True, method="BFGS", options=options)
+    found = minimize(  # type: ignore[call-overload]
+        value_and_gradient, np.zeros(len(unit)), jac=True, method="BFGS", options=options
+    )
     return Optimum(
         parameters=centre + unit * found.x,
         neg_log_likelihood=float(found.fun),

@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -164,18 +163,6 @@ def test_unknown_noise_model_lists_the_known(simulated, arrays):
     settings = linepose.CalibrationSettings(noise_model="publisched")
     with pytest.raises(linepose.InputError, match="expected one of published"):
         linepose.calibrate(linepose.observations_from_arrays(**arrays), simulated.intrinsics(), BY_HAND, settings)
-
-
-def test_prior_draws_the_pose_to_the_hand_measurement(simulated, arrays, calibration):
-    """A tape measure ten times as sure as usual leaves the data little to say of the height."""
-    sure = linepose.HandMeasured((0.2, 0.0, -0.8), (-56.0, 0.0, -90.0), sigma_position_m=0.01, sigma_euler_deg=0.2)
-    observations = linepose.observations_from_arrays(**arrays)
-    drawn = linepose.calibrate(observations, simulated.intrinsics(), sure, replace(QUICK, prior="hand_measured"))
-    assert_allclose(drawn.pose[:3], sure.pose[:3], atol=0.04)
-    assert abs(drawn.pose[2] - sure.pose[2]) < 0.3 * abs(calibration.pose[2] - sure.pose[2])
-    assert np.sqrt(drawn.covariance[2, 2]) < 0.012
-    with pytest.raises(linepose.InputError, match="prior: found 'tape', expected one of none, hand_measured"):
-        linepose.calibrate(observations, simulated.intrinsics(), sure, replace(QUICK, prior="tape"))
 
 
 def test_hand_measurement_without_sigmas_is_refused():

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pandas as pd
 import pytest
-from tiny_project import ROOT, STUDY, TINY
+from tiny_project import ROOT, STUDY, TINY, Project
 
 from linepose.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
 
@@ -61,18 +61,22 @@ def write_cvat(labels, path):
 
 
 @pytest.fixture
-def recorded(copied):
-    """The project with three platforms of device files, and their navigation as a drive."""
-    simulated = copied.folder / "results" / "tiny" / "simulated"
+def recorded(tmp_path):
+    """A project with the tiny survey, recorded by three kinds of devices, and their navigation as a drive."""
+    project = Project(tmp_path)
+    project.configure(STUDY, {"tiny": TINY})
+    run = project.run("results/tiny/simulated")
+    assert run.returncode == 0, run.stderr
+    simulated = project.folder / "results" / "tiny" / "simulated"
     labels = pd.read_csv(simulated / "labels.csv")
     sigma = np.sqrt(np.loadtxt(simulated / "covariances.csv", delimiter=",")[0, 1:].reshape(12, 12).diagonal()[:6])
     drive = drive_of(pd.read_parquet(simulated / "navigation.parquet"), np.diag(sigma**2))
     for name in ("novatel", "sbet", "rosbag"):
-        folder = copied.folder / "data" / name / "scans"
+        folder = project.folder / "data" / name / "scans"
         folder.mkdir(parents=True)
         for number in range(1, 5):
             (write_resonon if name == "sbet" else write_headwall)(simulated, folder, number)
-    data = copied.folder / "data"
+    data = project.folder / "data"
     write_labelme(labels, data / "novatel" / "scans")
     write_cvat(labels, data / "sbet" / "labels.xml")
     labels.to_csv(data / "rosbag" / "labels.csv", index=False)
@@ -92,7 +96,7 @@ def recorded(copied):
         for row, time in enumerate(drive.time_us):
             enu = writers.NED_FROM_ENU.T @ drive.position_m[row]
             bag.odometry("/odometry", time, enu, quaternion[row], covariance[row])
-    return copied, drive
+    return project, drive
 
 
 def platform(name, navigation, **source):

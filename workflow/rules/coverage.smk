@@ -24,7 +24,7 @@ def covered_cells(_):
 
 rule coverage_cell:
     input:
-        compiled="results/compiled.txt",
+        compiled=expand("results/compiled/{noise_model}.txt", noise_model=NOISE_MODELS),
     output:
         "results/coverage/cells/{platform}/{regime}/{noise_model}.parquet",
     log:

@@ -59,9 +59,7 @@ class RegimeSection(Section):
 class CoverageSection(Section):
     """Simulated surveys with a known truth: how often the stated regions hold it (snakemake coverage)."""
 
-    platforms: list[str] = Field(
-        [], description="Simulated platforms among the study's; all of these if empty."
-    )
+    platforms: list[str] = Field([], description="Simulated platforms among the study's; all of these if empty.")
     n_surveys: PositiveInt = Field(300, description="Surveys of each platform and regime.")
     n_draws: int = Field(1000, ge=100, description="Draws from each posterior.")
     seed: NonNegativeInt = Field(7, description="Seed of the study's surveys.")

@@ -1,4 +1,4 @@
-"""What a coverage study says: coverage with binomial intervals, root-mean-square errors, and whether ranks are uniform."""
+"""What a coverage study says: coverage with binomial intervals, root-mean-square errors, uniformity of ranks."""
 
 from typing import Final
 

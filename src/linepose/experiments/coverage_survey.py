@@ -1,10 +1,10 @@
 """Surveys whose noise is known, drawn from a platform's simulated drive: what the coverage study estimates poses from.
 
 The drive, the board and the reported covariances are the platform's, of the observations that carry no fault. What is
-drawn for each survey: navigation errors of given levels, in units of the reported sigmas; the noise of a point along and
-across the line; and the camera's true principal point and focal length, in units of the camera's sigmas. The noise of a
-point is that of the platform's extraction, across the line in lines and so in time, or of the camera's sigmas in pixels,
-which is what the noise models take it to be.
+drawn for each survey: navigation errors of given levels, in units of the reported sigmas; the noise of a point along
+and across the line; and the camera's true principal point and focal length, in units of the camera's sigmas. The noise
+of a point is that of the platform's extraction, across the line in lines and so in time, or of the camera's sigmas in
+pixels, which is what the noise models take it to be.
 """
 
 from dataclasses import dataclass, replace
@@ -52,7 +52,7 @@ def levels_from_prior(random: np.random.Generator, priors: SharedPriors) -> Nois
 def draw_survey(
     camera: Camera, settings: SimulationSettings, levels: NoiseLevels, random: np.random.Generator
 ) -> tuple[Survey, Floats]:
-    """A survey of the drive's faultless observations, and the true pose (6,); the camera is the one that is believed."""
+    """A survey of the drive's faultless observations, and the true pose (6,); the camera is as it is believed to be."""
     deviation = levels.intrinsics * random.standard_normal(2)
     true_camera = replace(
         camera,
@@ -87,9 +87,7 @@ def draw_survey(
     return survey.select([number for number in survey.number if number not in faulty]), truth.pose
 
 
-def _errors(
-    random: np.random.Generator, settings: SimulationSettings, levels: NoiseLevels, time_s: Floats
-) -> Floats:
+def _errors(random: np.random.Generator, settings: SimulationSettings, levels: NoiseLevels, time_s: Floats) -> Floats:
     """Navigation errors (N, M, 6) at the times (N, M) of all points."""
     order = np.argsort(time_s, axis=None, kind="stable")
     view = np.repeat(np.arange(time_s.shape[0]), time_s.shape[1])
@@ -116,9 +114,7 @@ def _scaled(settings: SimulationSettings, levels: NoiseLevels) -> NavigationErro
 
 def _pixels_per_second(camera: Camera, settings: SimulationSettings, truth: Truth, time_s: Floats) -> Floats:
     """How fast each point crosses the line (N, M), signed."""
-    after, before = (
-        _projection(camera, settings, truth, time_s + step)[1] for step in (_RATE_STEP_S, -_RATE_STEP_S)
-    )
+    after, before = (_projection(camera, settings, truth, time_s + step)[1] for step in (_RATE_STEP_S, -_RATE_STEP_S))
     return (after - before) / (2 * _RATE_STEP_S)
 
 

@@ -35,7 +35,9 @@ def coverage(curve: pd.DataFrame) -> Figure:
             part = rows[(rows["platform"] == platform) & (rows["regime"] == regime)]
             for model, line in part.groupby("noise_model", sort=False):
                 colour = _colour(str(model))
-                panel.fill_between(line["nominal"], line["coverage_low"], line["coverage_high"], color=colour, alpha=0.2)
+                panel.fill_between(
+                    line["nominal"], line["coverage_low"], line["coverage_high"], color=colour, alpha=0.2
+                )
                 panel.plot(line["nominal"], line["coverage"], color=colour, linewidth=1.0)
             panel.set(xlim=(0, 1), ylim=(0, 1), xticks=[0, 0.5, 1], yticks=[0, 0.5, 1])
             if i == 0:

@@ -21,7 +21,7 @@ _MOSAICS: Final[dict[int, list[Any]]] = {1: [[0]], 2: [[0, 1]], 3: [[0, 2], [1, 
 _TALLEST_IN: Final = 7.0
 _BESIDE_IN: Final = 0.56  # for a panel's ticks and labels
 _ABOVE_IN: Final = 0.72
-_CLOSE_UP_IN: Final = 3.4
+_CLOSE_UP_IN: Final = 3.9
 
 
 @styled
@@ -59,8 +59,8 @@ def points_in_scan(examples: Sequence[ScanExample]) -> Figure:
         u, line = one.points["u_px"].to_numpy(), one.points["line"].to_numpy()
         axes.plot(u, line, "+", color=RED, markersize=5)
         for number, x, y in zip(one.points["point"], u, line, strict=True):
-            text = axes.annotate(f"{number}", (x, y), (4, 4), textcoords="offset points", color=RED, fontsize=8)
-            text.set_path_effects([withStroke(linewidth=2.0, foreground="white")])
+            text = axes.annotate(f"{number}", (x, y), (2.5, 2.5), textcoords="offset points", color=RED, fontsize=8)
+            text.set_path_effects([withStroke(linewidth=1.5, foreground="white")])
         axes.set_xlabel("Pixel u (px)")
     figure.axes[0].set_ylabel("Scan line (count)")
     return figure

@@ -12,10 +12,10 @@ counts there.) The determinants are needed to infer the levels. Here they have t
 intrinsics and points of the anchor: chi^2 alone then decides on the pose, and it is unbiased as long as the covariance
 follows the pose as the residuals do.
 
-For that, noise across the line must follow as well. No pixel was measured there, v is zero, but a time: the noise is the
-body's motion during a short time, seen in the image. It is `sigma_v` across the line at the anchor; elsewhere it grows,
-shrinks and turns with the image of the body's motion, whose rate is a straight line through the reported poses of the
-view. Views whose points have no different times keep `sigma_v`.
+For that, noise across the line must follow as well. No pixel was measured there, v is zero, but a time: the noise is
+the body's motion during a short time, seen in the image. It is `sigma_v` across the line at the anchor; elsewhere it
+grows, shrinks and turns with the image of the body's motion, whose rate is a straight line through the reported poses
+of the view. Views whose points have no different times keep `sigma_v`.
 """
 
 from collections.abc import Sequence
@@ -93,17 +93,13 @@ class AnchoredLikelihood(SharedLikelihood):
     def log_likelihoods(self, parameters: ArrayLike) -> Floats:
         """Log-density of each row; (K, 11) to (K,), the same on any number of cores."""
         rows = np.ascontiguousarray(parameters, dtype=float).reshape(-1, self.n_parameters)
-        return rows_log_likelihood(
-            self._arrays, self._fixed, self._anchor, self._prior_centre, self._prior_sigma, rows
-        )
+        return rows_log_likelihood(self._arrays, self._fixed, self._anchor, self._prior_centre, self._prior_sigma, rows)
 
     def log_likelihood(self, parameters: ArrayLike) -> float:
         """Log-density of one parameter vector (11,), on one core."""
         vector = self._vector(parameters)
         return float(
-            row_log_likelihood(
-                self._arrays, self._fixed, self._anchor, self._prior_centre, self._prior_sigma, vector
-            )
+            row_log_likelihood(self._arrays, self._fixed, self._anchor, self._prior_centre, self._prior_sigma, vector)
         )
 
     def select(self, numbers: Sequence[int]) -> "AnchoredLikelihood":

@@ -26,9 +26,7 @@ def anchored_log_determinant(arrays: SharedArrays, fixed: FixedOptics, anchor: A
     if not linearise(arrays, optics_at(anchor.parameters, fixed), levels, anchor.points_m, lines):
         return np.inf
     views = arrays.view_first.shape[0] - 1
-    system = normal_equations(
-        arrays, lines, anchor.points_m.shape[0], np.ones(views), np.ones(arrays.u_px.shape[0])
-    )
+    system = normal_equations(arrays, lines, anchor.points_m.shape[0], np.ones(views), np.ones(arrays.u_px.shape[0]))
     log_determinant, _ = solve_system(system)
     return log_determinant + np.sum(lines.log_determinant)
 

@@ -40,7 +40,7 @@ def reduced(path: Path) -> Image.Image:
     """A PNG file's image with a palette of its own."""
     try:
         with Image.open(path) as image:
-            return image.convert("RGB").quantize(_COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+            return image.convert("RGB").quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     except (OSError, UnidentifiedImageError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "a PNG file", "delete the figures' folder and run again") from None

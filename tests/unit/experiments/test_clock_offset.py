@@ -1,5 +1,7 @@
 """A planted clock offset is found where passes differ in direction and speed, and owned up to where they do not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -15,6 +17,7 @@ from linepose.experiments.clock_offset import (
 from linepose.optimise import laplace_covariance, optimise
 from linepose.pose import POSE_COLUMNS
 from linepose.sampling import SamplingSettings
+from linepose.simulate.navigation_error import mixed
 from linepose.storage import read_table, write_table
 
 from .. import clock_survey
@@ -63,6 +66,23 @@ def test_planted_offset_is_recovered_within_its_sigma(platform):
         errors.append((found.parameters[-1] - PLANTED_S) / sigma)
     assert 0.38 < np.sum(np.square(errors)) < 22.5
     assert abs(np.mean(errors)) < 3.3 / np.sqrt(6)
+
+
+@pytest.mark.statistical
+def test_shared_noise_model_is_honest_where_a_view_s_points_share_the_error(platform):
+    """Nine tenths of the variance common to a view; three surveys, chi-square of 3."""
+    settings, errors = clock_survey.both_ways(platform.simulation), []
+    reported = settings.reported_sigma
+    shared = mixed([*reported.position_m, *reported.euler_rad], 0.9)
+    for seed in range(3):
+        survey, log = clock_survey.record(
+            platform.intrinsics(), replace(settings, navigation_error=shared), PLANTED_S, seed
+        )
+        model = clock_survey.likelihood(platform.intrinsics(), survey, log, 0.3, "shared")
+        found = optimise(model, platform.start_pose())
+        assert model.parameter_names[-1] == "clock_offset_s"
+        errors.append((found.parameters[-1] - PLANTED_S) / laplace_covariance(model, found.parameters)[-1, -1] ** 0.5)
+    assert 0.024 < np.sum(np.square(errors)) < 16.3
 
 
 @pytest.mark.statistical

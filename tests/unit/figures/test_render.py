@@ -26,7 +26,7 @@ from linepose.storage import write_table
 
 from .. import made_up
 
-WITHOUT_SCANS = {"stacked_scan", "labelled_points", "detected_points"}
+NOT_MADE = {entry.name for entry in FIGURES if entry.left_out(made_up.platform())}  # for want of scans or experiments
 
 
 @pytest.fixture(scope="module")
@@ -39,10 +39,11 @@ def drawn(tmp_path_factory):
 
 def test_every_figure_is_drawn_or_has_a_sentence_in_its_place(drawn):
     folder, index = drawn
+    assert {"stacked_scan", "labelled_points"} < NOT_MADE
     assert list(index["figure"]) == [entry.name for entry in FIGURES]
-    assert set(index.loc[index["left_out"] != "", "figure"]) == WITHOUT_SCANS
+    assert set(index.loc[index["left_out"] != "", "figure"]) == NOT_MADE
     files = {path.name for path in (folder / "figures").iterdir()}
-    shown = set(index["figure"]) - WITHOUT_SCANS
+    shown = set(index["figure"]) - NOT_MADE
     assert files == {f"{name}.{kind}" for name in shown for kind in ("png", "pdf")}
     assert all(index.loc[index["left_out"] == "", "caption"].str.endswith("."))
     write_table(index, folder / "index.parquet", SCHEMA)
@@ -56,7 +57,7 @@ def test_a_broken_chain_costs_its_figures_and_no_other(drawn, tmp_path):
     index = render_figures(PlatformResults("made_up", made_up.platform(), tmp_path, 5.0), tmp_path / "figures")
     left_out = index.set_index("figure")["left_out"]
     lost = {"corner", "rotation_axis", "platform_sketch", "trace", "autocorrelation"}
-    assert set(left_out[left_out != ""].index) == WITHOUT_SCANS | lost
+    assert set(left_out[left_out != ""].index) == NOT_MADE | lost
     assert "theta_x_rad" in left_out["corner"]
     assert not any((tmp_path / "figures" / f"{name}.png").exists() for name in lost)
 
@@ -89,7 +90,7 @@ def reads(reader, folder):
 @pytest.fixture(scope="module")
 def readers(drawn):
     """Everything that is made from results, with the tables that each reads."""
-    entries = [entry for entry in FIGURES if entry.name not in WITHOUT_SCANS]
+    entries = [entry for entry in FIGURES if entry.name not in NOT_MADE]
     makers = [*(entry.caption for entry in entries), *(entry.draw for entry in entries), summarise, platform_sections]
     return [(maker, reads(maker, drawn[0])) for maker in makers]
 
@@ -130,7 +131,7 @@ def test_a_chain_that_stands_still_is_told_rather_than_drawn():
         usable_chain(made_up.samples().assign(r_x_m=0.19))
 
 
-@pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in WITHOUT_SCANS], ids=lambda e: e.name)
+@pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in NOT_MADE], ids=lambda e: e.name)
 def test_text_can_be_read_where_the_figure_is_printed_at_half_a_page(drawn, entry):
     folder, _ = drawn
     figure = entry.draw(PlatformResults("made_up", made_up.platform(), folder, 5.0))

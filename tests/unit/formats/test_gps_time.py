@@ -48,7 +48,7 @@ def test_there_have_been_18_leap_seconds_since_1980():
 
 def test_a_time_beyond_the_list_is_converted_with_a_warning(caplog):
     gps = gps_time.gps_from_unix(us(2099, 1, 1))
-    with caplog.at_level(logging.WARNING):
+    with caplog.at_level(logging.WARNING, logger="linepose"):
         assert abs(gps_time.unix_from_gps(gps) - us(2099, 1, 1)) == 0
     assert "update the package tzdata" in caplog.text
     assert "2099-01-01" in caplog.text

@@ -103,7 +103,7 @@ def test_short_and_long_form_of_one_pose_count_once(tmp_path, drive):
 def test_poses_before_alignment_are_left_out(tmp_path, drive, caplog):
     messages = [novatel_writer.pva("INSPVAS", drive, row, True, status=1 if row < 3 else 3) for row in range(10)]
     (tmp_path / "a.gps").write_bytes(b"".join(messages))
-    with caplog.at_level(logging.WARNING):
+    with caplog.at_level(logging.WARNING, logger="linepose"):
         record = read_navigation(section("a.gps"), tmp_path)
     np.testing.assert_array_equal(record.log.time_us, drive.time_us[3:10])
     assert "3 poses without an INS solution are left out" in caplog.text
@@ -115,7 +115,7 @@ def test_what_is_no_message_is_told(tmp_path, drive, caplog):
     broken[40] ^= 1  # its CRC no longer fits
     content = b"".join([*messages[:4], bytes(broken), *messages[5:], messages[0][:50]])
     (tmp_path / "a.gps").write_bytes(content)
-    with caplog.at_level(logging.WARNING):
+    with caplog.at_level(logging.WARNING, logger="linepose"):
         record = read_navigation(section("a.gps"), tmp_path)
     assert len(record.log.time_us) == 9
     assert f"{len(broken) + 50} bytes are no whole message" in caplog.text

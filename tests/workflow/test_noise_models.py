@@ -1,0 +1,71 @@
+"""The whole pipeline under the shared noise model, and the noise models side by side."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from tiny_project import STUDY, TINY
+
+from linepose.likelihood.shared import LEVEL_NAMES, SHARED_PARAMETERS
+from linepose.pose import POSE_COLUMNS
+
+pytestmark = pytest.mark.workflow
+
+
+@pytest.fixture(scope="module")
+def shared(finished, tmp_path_factory):
+    """The finished project with its platform under the shared noise model, run again."""
+    import shutil
+
+    from tiny_project import Project
+
+    folder = tmp_path_factory.mktemp("shared") / "project"
+    shutil.copytree(finished.folder, folder)
+    project = Project(folder)
+    experiments = TINY["experiments"] | {"noise_models": None, "repeatability": {"n_splits": 2}, "sensitivity": {}}
+    project.configure(STUDY, {"tiny": TINY | {"noise_model": "shared", "experiments": experiments}})
+    run = project.run()
+    assert run.returncode == 0, run.stderr
+    return folder / "results"
+
+
+def test_models_are_side_by_side(finished):
+    results = finished.folder / "results" / "tiny"
+    table = pd.read_parquet(results / "noise_models.parquet")
+    assert table[["noise_model", "set"]].to_numpy().tolist() == [
+        [model, name] for name in ("all", "inliers") for model in ("published", "shared", "robust")
+    ]
+    published = table[table["noise_model"] == "published"].set_index("set")
+    own = pd.read_parquet(results / "optima.parquet").set_index("stage")
+    np.testing.assert_array_equal(
+        published.loc["inliers", list(POSE_COLUMNS)].astype(float), own.loc["inliers", list(POSE_COLUMNS)].astype(float)
+    )
+    assert table["error_in_sigmas"].notna().all()
+    assert len(pd.read_parquet(results / "weights.parquet")) == 60
+    assert pd.read_parquet(results / "identifiability.parquet")["parameter"].tolist()[6:9] == list(LEVEL_NAMES)
+    summary = pd.read_parquet(results / "consistency_summary.parquet")
+    assert set(summary["noise_model"]) == {"published", "shared"}
+    assert (summary["n_splits"] + summary["n_open"] == 2).all()
+    assert "Which noise model?" in (finished.folder / "results" / "report.html").read_text()
+
+
+def test_every_stage_runs_under_the_shared_model(shared):
+    optima = pd.read_parquet(shared / "tiny" / "optima.parquet")
+    assert {*SHARED_PARAMETERS, "laplace_sigma_log_white_level"} <= set(optima.columns)
+    samples = pd.read_parquet(shared / "tiny" / "mcmc" / "inliers.parquet")
+    settings = STUDY["independence_sampling"]
+    assert len(samples) == settings["n_walkers"] * settings["n_steps"]
+    assert set(SHARED_PARAMETERS) <= set(samples.columns)
+    made = {path.stem for path in (shared / "tiny").glob("*.parquet")}
+    experiments = {"splits", "leave_one_out", "basin_summary", "mapping_summary", "sensitivity", "residuals"}
+    assert experiments <= made
+    assert "residual in pixels" not in set(pd.read_parquet(shared / "tiny" / "sensitivity.parquet")["change"])
+
+
+def test_every_parameter_is_diagnosed_and_a_short_chain_is_told_its_section(shared):
+    table = pd.read_parquet(shared / "tiny" / "diagnostics.parquet")
+    inliers = table[table["stage"] == "inliers"]
+    assert inliers["parameter"].tolist() == list(SHARED_PARAMETERS)
+    assert inliers["warning"].str.contains("set independence_sampling.n_steps to").all()
+    text = (shared / "report.html").read_text()
+    assert "noise model shared" in text
+    assert "independence_sampling.n_steps" in text
