@@ -7,7 +7,7 @@ from linepose.quasi_newton import descend
 
 
 def test_optimum_is_the_known_minimum(gaussian, pose_covariance, true_pose):
-    found = descend(gaussian, true_pose + [0.1, -0.1, 0.1, 0.03, 0.03, -0.03])
+    found = descend(gaussian, true_pose + np.array([0.1, -0.1, 0.1, 0.03, 0.03, -0.03]))
     expected = gaussian.measured.mean(axis=0)
     distance = np.linalg.solve(np.linalg.cholesky(laplace_covariance(gaussian, expected)), found.parameters - expected)
     assert np.linalg.norm(distance) < 0.02  # gradient below 1e-3 a unit, a unit below twenty of the smallest sigmas

@@ -25,7 +25,7 @@ from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.shared import SharedLikelihood, SharedPriors
 from linepose.observations import Survey
-from linepose.optimise import laplace_covariance
+from linepose.optimise import Optimum, laplace_covariance
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.quasi_newton import descend
 from linepose.rotations import Floats
@@ -94,8 +94,16 @@ class Cell:
                     strict=True,
                 )
             ),
-            **estimate_row(self.likelihood(survey), self.start_pose, truth, random, self.n_draws),
+            **self._estimate(survey, truth, random),
         }
+
+    def _estimate(self, survey: Survey, truth: Floats, random: np.random.Generator) -> dict[str, Any]:
+        """The row's estimate; a survey so noisy that a point lies behind the camera at the start has none."""
+        try:
+            likelihood = self.likelihood(survey)
+        except InputError:
+            return failed_row(Optimum(self.start_pose, 0.0, 0, converged=False))
+        return estimate_row(likelihood, self.start_pose, truth, random, self.n_draws)
 
     def rows(self, surveys: Iterable[int]) -> pd.DataFrame:
         """One row a survey; each depends on its number alone, not on which others are estimated with it."""
@@ -111,17 +119,7 @@ def estimate_row(
     credibilities are 1, and what it has no number for is NaN.
     """
     found = descend(likelihood, start_pose)
-    row: dict[str, Any] = {
-        **dict(zip(POSE_COLUMNS, found.parameters, strict=False)),
-        "neg_log_likelihood": found.neg_log_likelihood,
-        "n_evaluations": found.n_evaluations,
-        "failed": True,
-        **dict.fromkeys(
-            [*SIGMA_COLUMNS, *LEVEL_COLUMNS, *RANK_COLUMNS, "pareto_shape", "effective_sample_size"], _NOTHING
-        ),
-        "laplace_credibility": 1.0,
-        "credibility": 1.0,
-    }
+    row = failed_row(found)
     try:
         covariance = laplace_covariance(likelihood, found.parameters)
         samples = importance_samples(likelihood, found.parameters, covariance, random, n_draws)
@@ -140,6 +138,20 @@ def estimate_row(
         "effective_sample_size": samples.effective_sample_size,
         "laplace_credibility": float(chi2.cdf(distance2, N_PARAMETERS)),
         "credibility": credibility(samples, truth),
+    }
+
+
+def failed_row(found: Optimum) -> dict[str, Any]:
+    """What is told of an estimate that failed: where the search ended, and that no region holds the truth."""
+    unknown = [*SIGMA_COLUMNS, *LEVEL_COLUMNS, *RANK_COLUMNS, "pareto_shape", "effective_sample_size"]
+    return {
+        **dict(zip(POSE_COLUMNS, found.parameters, strict=False)),
+        "neg_log_likelihood": found.neg_log_likelihood,
+        "n_evaluations": found.n_evaluations,
+        "failed": True,
+        **dict.fromkeys(unknown, _NOTHING),
+        "laplace_credibility": 1.0,
+        "credibility": 1.0,
     }
 
 

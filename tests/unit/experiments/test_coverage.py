@@ -17,7 +17,9 @@ def estimates(function_likelihood, claimed):
     random, rows = np.random.default_rng(11), []
     for _ in range(N):
         data = SIGMA * random.standard_normal(6)
-        likelihood = function_likelihood(lambda p, data=data: 0.5 * np.sum(((p - data) / (claimed * SIGMA)) ** 2, axis=1))
+        likelihood = function_likelihood(
+            lambda p, data=data: 0.5 * np.sum(((p - data) / (claimed * SIGMA)) ** 2, axis=1)
+        )
         rows.append(estimate_row(likelihood, np.zeros(6), np.zeros(6), random, 300))
     return pd.DataFrame(rows)
 

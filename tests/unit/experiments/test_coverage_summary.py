@@ -29,9 +29,9 @@ def surveys(credibility, failed=None, regime="white"):
         "laplace_credibility": credibility,
         "effective_sample_size": 500.0,
         "pareto_shape": 0.1,
-        **{name: 0.0 for name in TRUE_COLUMNS},
+        **dict.fromkeys(TRUE_COLUMNS, 0.0),
         **{name: np.where(failed, 1e6, 0.3) for name in POSE_COLUMNS},
-        **{name: 0.1 for name in SIGMA_COLUMNS},
+        **dict.fromkeys(SIGMA_COLUMNS, 0.1),
         **{name: np.arange(n) % (N_RANKED + 1) for name in RANK_COLUMNS},
     }
     return pd.DataFrame(values)

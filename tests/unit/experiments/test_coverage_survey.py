@@ -51,9 +51,7 @@ def test_noise_of_the_extraction_is_the_simulators(platform):
     settings = without_faults(platform.simulation)
     quiet = replace(settings, navigation_error=type(settings.navigation_error)())
     simulated, _ = simulate_survey(platform.intrinsics(), quiet, 3)
-    survey, truth = draw_survey(
-        platform.intrinsics(), quiet, NoiseLevels(intrinsics=0.0), np.random.default_rng(3)
-    )
+    survey, truth = draw_survey(platform.intrinsics(), quiet, NoiseLevels(intrinsics=0.0), np.random.default_rng(3))
     ours, theirs = (np.nanstd(residuals(s, platform.intrinsics(), truth), axis=(0, 1)) for s in (survey, simulated))
     np.testing.assert_allclose(ours, theirs, rtol=0.3)
 

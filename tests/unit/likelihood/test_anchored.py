@@ -12,6 +12,7 @@ from linepose.likelihood.anchored import AnchoredLikelihood, body_rates
 from linepose.likelihood.anchored_rows import anchored_log_determinant
 from linepose.likelihood.shared import SharedLikelihood
 from linepose.likelihood.shared_kernel import Levels
+from linepose.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
 
 LEVELS = (0.6, 0.2, 1.3)
 
@@ -75,13 +76,13 @@ def test_body_rates_are_the_slopes_and_yaw_goes_round():
 def test_chi_squared_pulls_the_pose_nowhere_under_white_navigation_errors():
     # The determinants of the shared-error model pull along the optical axis by the residuals over the distance.
     step, axis = 1e-4, np.zeros(11)
-    axis[2] = step
+    axis[:3] = step * matrix_from_rotation_vector(POSE[3:])[:, 2]
     anchored, shared = [], []
     for seed in range(40):
-        survey = make_survey(6, 6, Truth(0.0, 1.0, 0.2), seed)
+        survey = make_survey(6, 6, Truth(0.0, 2.0, 0.2), seed)
         models = AnchoredLikelihood(survey, CAMERA, POSE), SharedLikelihood(survey, CAMERA)
         for model, slopes in zip(models, (anchored, shared), strict=True):
-            vector = vector_of(model, levels=(1e-3, 1.0, 0.2))
+            vector = vector_of(model, levels=(1e-3, 2.0, 0.2))
             slopes.append((model.log_likelihood(vector + axis) - model.log_likelihood(vector - axis)) / (2 * step))
     error = np.std(anchored) / np.sqrt(40)
     assert abs(np.mean(anchored)) < 4 * error
@@ -98,8 +99,8 @@ def test_selection_keeps_the_anchor():
 
 
 def test_anchor_that_looks_away_is_told():
+    about_y = matrix_from_rotation_vector(np.array([0.0, np.pi, 0.0]))  # each ray becomes its own opposite
     turned = POSE.copy()
-    turned[3:] = [0.0, 0.0, 0.0]
-    turned[3] = np.pi  # looks up
+    turned[3:] = rotation_vector_from_matrix(matrix_from_rotation_vector(POSE[3:]) @ about_y)
     with pytest.raises(InputError, match="anchor pose"):
         AnchoredLikelihood(make_survey(3, 3, Truth(0.0), seed=1), CAMERA, turned)
