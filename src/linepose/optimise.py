@@ -3,7 +3,7 @@
 A noise model with parameters of its own (levels, intrinsics) is searched in two steps, since Powell's method takes five
 times as long over eleven parameters as a gradient does: Powell, coarsely, over the pose, then BFGS over everything.
 With levels that are far off, Powell's method can leave a good start for a worse minimum, so BFGS also goes from the
-start itself, and the better end counts.
+start itself, and the better end inside the range counts.
 """
 
 from dataclasses import dataclass, replace
@@ -22,6 +22,7 @@ _STEPS = np.array([1.0, -1.0])
 _COARSE_X, _COARSE_F = 1e-2, 1e-4
 _UNIT = 0.1  # of the half widths for 0.5 m and 0.1 rad: about a sigma of each parameter, BFGS's unit
 _UNIT_M, _UNIT_RAD = 0.5, 0.1
+_EDGE = 0.999  # of the pose's range: what ends there is no optimum, a pose that gross errors have driven away
 _DIFFERENCE = 1e-3  # in those units
 _GRADIENT = 1e-3  # in -log L per unit, where BFGS ends: some thousandths of a sigma from the optimum
 _FLAT = 2e-2  # where the rounding of the robust model's sweeps may end it: some hundredths
@@ -79,7 +80,7 @@ def optimise_within(
         coarse = replace(search, x_tolerance=_COARSE_X, f_tolerance=_COARSE_F)
         first = _powell(likelihood, start, centre, half_width, coarse)
     ends = [_climb(likelihood, parameters, centre, half_width) for parameters in (start, first.parameters)]
-    best = min(ends, key=lambda end: end.neg_log_likelihood)
+    best = min(ends, key=lambda end: (not end.converged, end.neg_log_likelihood))
     return replace(best, n_evaluations=first.n_evaluations + sum(end.n_evaluations for end in ends))
 
 
@@ -135,11 +136,13 @@ def _climb(likelihood: Likelihood, first: Floats, centre: Floats, half_width: Fl
         return (up - down) / (2 * _DIFFERENCE)
 
     found = minimize(objective, np.zeros(len(unit)), jac=gradient, method="BFGS", options={"gtol": _GRADIENT})
+    end = bounded(origin + unit * found.x, centre, half_width)
+    inside = np.abs(end - centre)[:N_PARAMETERS] < _EDGE * half_width[:N_PARAMETERS]
     return Optimum(
-        parameters=bounded(origin + unit * found.x, centre, half_width),
+        parameters=end,
         neg_log_likelihood=float(found.fun),
         n_evaluations=int(found.nfev + len(moves) * found.njev),
-        converged=bool(np.max(np.abs(found.jac)) < _FLAT) and found.fun < _UNDEFINED,
+        converged=bool(np.max(np.abs(found.jac)) < _FLAT and np.all(inside)) and found.fun < _UNDEFINED,
     )
 
 

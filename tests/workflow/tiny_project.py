@@ -17,7 +17,7 @@ STUDY = {
     "data_folders": ["data"],
     "outliers": {"minimum_observations": 3, "threshold_px": 50.0},
     "sampling": {"n_walkers": 14, "n_burn_in": 5, "n_steps": 12},
-    "independence_sampling": {"n_walkers": 22, "n_burn_in": 20, "n_steps": 12},
+    "independence_sampling": {"n_walkers": 24, "n_burn_in": 20, "n_steps": 12},
 }
 PASSES = [
     {"north_m": -2.85, "east_m": -0.55, "heading_deg": 21, "speed_m_s": -0.5, "duration_s": 4},

@@ -38,7 +38,11 @@ def new(
         str | None, typer.Option(help="Folder of the platform's files below data/.", show_default="NAME")
     ] = None,
     navigation_format: Annotated[
-        str | None, typer.Option(help="Format of the navigation log, for scans.", show_default="CSV or Parquet table")
+        str | None,
+        typer.Option(
+            help="Format of the navigation log, for scans: novatel, sbet, rosbag, resonon or table (docs/formats.md).",
+            show_default="table: CSV or Parquet",
+        ),
     ] = None,
     navigation: Annotated[str | None, typer.Option(help="File of the navigation log, for scans.")] = None,
     description: Annotated[str | None, typer.Option(help="One line for people.")] = None,
@@ -75,7 +79,7 @@ def new(
     if asks and dataset is None:
         dataset = _given(None, "--dataset", "Folder of its files below data/", str, name)
     if asks and source == "scans" and navigation_format is None:
-        ask = "Navigation log: table, or a format by name"
+        ask = "Navigation log (table, novatel, sbet, rosbag, resonon)"
         navigation_format = _given(None, "--navigation-format", ask, str, "table")
     plain_table = navigation_format in {None, "", "table"}
     path = write_platform(

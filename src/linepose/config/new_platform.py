@@ -144,7 +144,7 @@ def _source(new: NewPlatform) -> list[str]:
         lines.append(f"  navigation: {_quoted(log)} # time_us, north_m, east_m, down_m, roll_rad, pitch_rad, yaw_rad")
     else:
         lines += [
-            "  navigation: # further keys of each format: docs/configuration.md",
+            "  navigation: # further keys of each format: docs/formats.md",
             f"    format: {new.navigation_format}",
             f"    file: {_quoted(new.navigation or 'navigation.*')} # below the data set's folder",
         ]

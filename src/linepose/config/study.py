@@ -64,7 +64,7 @@ class SamplingSection(Section):
 class IndependenceSamplingSection(Section):
     """Sampling where the noise model infers its levels: proposals from the fitted posterior."""
 
-    n_walkers: int = Field(24, ge=22, description="Walkers of the ensemble, two a parameter or more.")
+    n_walkers: int = Field(24, ge=24, description="Walkers of the ensemble, two a parameter or more.")
     n_burn_in: int = Field(160, ge=20, description="Steps that fit the proposals, thrown away.")
     n_steps: int = Field(1000, ge=4, description="Steps kept.")
     independent_share: float = Field(

@@ -30,6 +30,7 @@ from linepose.rotations import Floats
 from linepose.sampling import Chain, IndependenceSettings, SamplingSettings, sample, section_of, stage_seed
 
 ALL, INLIERS = "all", "inliers"
+_WHERE_ROBUST: Final = (ALL, INLIERS)  # it stands against the removal; elsewhere it would cost ten times the rest
 EXTRA_PARAMETERS: Final = SHARED_PARAMETERS[N_PARAMETERS:]
 LEVELS: Final = tuple(name.removeprefix("log_") for name in LEVEL_NAMES)
 _QUANTILES: Final = {"": 0.5, "_low": 0.16, "_high": 0.84}
@@ -67,9 +68,14 @@ def fit_noise_models(
     seed: int,
     search: Search | None = None,
 ) -> Iterator[Fit]:
-    """Each noise model of `settings`, by name with its sampling, fitted to each set, from a start pose (6,)."""
+    """Each noise model of `settings`, by name with its sampling, fitted to each set, from a start pose (6,).
+
+    The robust one is fitted to all observations and to the accepted ones only.
+    """
     for place, (name, survey) in enumerate(sets.items()):
         for noise_model, how in settings.items():
+            if noise_model == ROBUST and name not in _WHERE_ROBUST:
+                continue
             likelihood = likelihood_of(noise_model, survey, camera)
             optimum = optimise(likelihood, start, search)
             chain = sample(likelihood, optimum.parameters, stage_seed(seed, place), how)

@@ -15,6 +15,7 @@ from linepose.report.sections import SectionOnPage, TableOnPage
 
 _POSE_HEADS: Final = ("r_x (m)", "r_y (m)", "r_z (m)", "theta e_x (rad)", "theta e_y (rad)", "theta e_z (rad)")
 _LEVELS: Final = ("shared_level", "white_level", "pixel_level")
+_FAR: Final = 0.999  # content of the region around the shared estimate, beyond which the robust one is another pose
 _WELL_MATCHED: Final = (0.8, 1.25)  # factors on the sigmas that are no reason to change them
 
 
@@ -68,10 +69,16 @@ def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.Dat
     sentences.append(
         f"The robust model with all {int(robust['n_observations'])} observations in lies {robust['mahalanobis']:.1f} "
         f"sigmas (six degrees of freedom, median {chi.median(N_PARAMETERS):.1f}) from the shared model's accepted "
-        "ones: use it where the removal of observations is not to be trusted."
+        f"ones: {_robust_advice(float(robust['mahalanobis']))}"
     )
     sentences.append(f"The data say least of {identified['weakest_in_words'].iloc[0]}.")
     return " ".join(sentences)
+
+
+def _robust_advice(distance: float) -> str:
+    if distance < chi.ppf(_FAR, N_PARAMETERS):
+        return "use it where the removal of observations is not to be trusted."
+    return "too far to be the same pose. Its weights name the bad views, its pose is not to be used here."
 
 
 def _halves_factor(summary: pd.DataFrame, model: str) -> float:

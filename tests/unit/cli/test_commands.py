@@ -79,6 +79,22 @@ def test_new_asks_for_what_is_not_given_until_it_fits(here):
     assert platform.hand_measured.position_m == (0.2, 0.0, -0.8)
 
 
+@pytest.mark.parametrize("name", ["novatel", "sbet", "rosbag", "resonon"])
+def test_new_takes_every_navigation_format(here, name):
+    log = ["--source", "scans", "--navigation-format", name, "--navigation", "log/*.bin"]
+    result = given("new", "mine", *GIVEN, *log)
+    assert result.exit_code == 0, result.output
+    source = load_platform(here / "config" / "platforms", "mine").source
+    assert (source.navigation.format, source.navigation.file) == (name, "log/*.bin")
+    assert source.covariances is None
+
+
+def test_new_lists_the_formats_for_an_unknown_one(here):
+    result = given("new", "mine", *GIVEN, "--source", "scans", "--navigation-format", "sbett")
+    assert "did you mean sbet?" in one_line(result)
+    assert not (here / "config" / "config.yaml").exists()
+
+
 def test_new_without_an_answer_names_the_option(here):
     result = given("new", "mine", "--focal-length-mm", "8.2", answers="")
     assert result.exit_code == 2
@@ -109,6 +125,8 @@ def test_new_adds_to_a_project_that_is_there(here):
     after = config.read_text().splitlines()
     assert [line for line in after if line not in before] == ["  - second"]
     assert len(after) == len(before) + 1
+    given("new", "second", *GIVEN, "--force")
+    assert config.read_text().splitlines() == after
 
 
 @pytest.mark.parametrize("name", ["a/b", "", "two words"])
