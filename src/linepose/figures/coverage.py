@@ -71,7 +71,7 @@ def ranks(surveys: pd.DataFrame, noise_model: str) -> Figure:
                 panel.set_title(_PARAMETERS[j])
         platform, regime = cell
         panels[i, 0].set_ylabel(f"{str(platform).removesuffix('-sim')}\n{regime}")
-    panels[-1, 2].set_xlabel(f"Rank of the true parameter among {N_RANKED} samples", loc="left")
+    figure.supxlabel(f"Rank of the true parameter among {N_RANKED} samples", fontsize=8)
     return figure
 
 
@@ -98,7 +98,7 @@ def errors(summary: pd.DataFrame) -> Figure:
                 total = scale * np.sqrt((line[columns].to_numpy() ** 2).sum(axis=1))
                 shift = (k - (len(models) - 1) / 2) * 0.8 / len(models)
                 panel.bar(np.array(at) + shift, total, 0.8 / len(models), color=_colour(model))
-            panel.set_xticks(range(len(regimes)), regimes, rotation=20)
+            panel.set_xticks(range(len(regimes)), regimes, rotation=35, ha="right")
             panel.set_yscale("log")
         panels[i, 0].set_ylabel(f"{platform}\nposition (m)")
         panels[i, 1].set_ylabel("rotation (°)")
