@@ -71,7 +71,7 @@ def ranks(surveys: pd.DataFrame, noise_model: str) -> Figure:
                 panel.set_title(_PARAMETERS[j])
         platform, regime = cell
         panels[i, 0].set_ylabel(f"{str(platform).removesuffix('-sim')}\n{regime}")
-    panels[-1, 2].set_xlabel(f"Rank of the true parameter among {N_RANKED} samples", loc="left")
+    figure.supxlabel(f"Rank of the true parameter among {N_RANKED} samples", fontsize=8)
     return figure
 
 
@@ -81,7 +81,8 @@ def errors(summary: pd.DataFrame) -> Figure:
 
     `summary` as in `coverage_schemas.COVERAGE_SUMMARY`; one row of panels a platform.
     """
-    rows = usable_rows(summary, ["platform", "regime", "noise_model", *RMSE_COLUMNS], "summary.parquet")
+    rows = usable_rows(summary, ["platform", "regime", "noise_model"], "summary.parquet")
+    rows = rows[rows[list(RMSE_COLUMNS)].notna().all(axis=1)]  # without those of which every estimate failed
     platforms, regimes, models = (_names(rows, key) for key in ("platform", "regime", "noise_model"))
     figure = blank_figure(WIDE_IN, 0.5 + 1.6 * len(platforms))
     panels = figure.subplots(len(platforms), 2, squeeze=False, sharex=True)
@@ -97,7 +98,8 @@ def errors(summary: pd.DataFrame) -> Figure:
                 total = scale * np.sqrt((line[columns].to_numpy() ** 2).sum(axis=1))
                 shift = (k - (len(models) - 1) / 2) * 0.8 / len(models)
                 panel.bar(np.array(at) + shift, total, 0.8 / len(models), color=_colour(model))
-            panel.set_xticks(range(len(regimes)), regimes, rotation=20)
+            panel.set_xticks(range(len(regimes)), regimes, rotation=35, ha="right")
+            panel.set_yscale("log")
         panels[i, 0].set_ylabel(f"{platform}\nposition (m)")
         panels[i, 1].set_ylabel("rotation (°)")
     _legend(figure, models)

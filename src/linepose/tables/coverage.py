@@ -17,11 +17,15 @@ def coverage_table(summary: pd.DataFrame) -> str:
     """A Markdown table, one row a cell; intervals are of 95 %."""
     lines = ["| " + " | ".join(HEADINGS) + " |", "|" + " --- |" * len(HEADINGS)]
     for _, row in summary.iterrows():
-        rmse = [f"{row[column]:.3f}" for column in RMSE_COLUMNS]
+        rmse = (
+            [f"{row[column]:.3f}" for column in RMSE_COLUMNS]
+            if row["n_failed"] < row["n_surveys"]
+            else ["-", "", ""] * 2
+        )
         cells = [
             *(row["platform"], row["regime"], row["noise_model"], _rate(row, 68), _rate(row, 95)),
-            " ".join(rmse[:3]),
-            *(" ".join(rmse[3:]), f"{row['n_failed']} of {row['n_surveys']}"),
+            " ".join(rmse[:3]).strip(),
+            *(" ".join(rmse[3:]).strip(), f"{row['n_failed']} of {row['n_surveys']}"),
         ]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
