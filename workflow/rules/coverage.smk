@@ -1,25 +1,6 @@
-REGIMES = STUDY.coverage.regimes
-
-
 wildcard_constraints:
     regime="[A-Za-z0-9-]+",
     noise_model="[a-z]+",
-
-
-def covered_cells(_):
-    """Every platform, regime and noise model of the coverage study."""
-    cells = [
-        f"results/coverage/cells/{platform}/{regime}/{model}.parquet"
-        for platform in PROJECT.covered
-        for regime, section in REGIMES.items()
-        for model in section.noise_models
-    ]
-    if not cells:
-        raise WorkflowError(
-            "config/config.yaml: coverage: found no regime or no simulated platform, expected at least one of each; "
-            "add them under coverage.regimes and platforms"
-        )
-    return cells
 
 
 rule coverage_cell:
@@ -34,7 +15,7 @@ rule coverage_cell:
     threads: 64  # as many as there are
     params:
         platform=settings,
-        regime=lambda wildcards: REGIMES[wildcards.regime].model_dump(
+        regime=lambda wildcards: STUDY.coverage.regimes[wildcards.regime].model_dump(
             mode="json", exclude={"noise_models"}
         ),
         study=STUDY.coverage.model_dump(

@@ -110,3 +110,19 @@ def figure_labels(wildcards):
     index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
     entry = index.set_index("figure").loc[wildcards.figure]
     return {"figure": entry["title"], "paper": entry["paper_figure"] or "beyond it"}
+
+
+def covered_cells(_):
+    """Every platform, regime and noise model of the coverage study."""
+    cells = [
+        f"results/coverage/cells/{platform}/{regime}/{model}.parquet"
+        for platform in PROJECT.covered
+        for regime, section in STUDY.coverage.regimes.items()
+        for model in section.noise_models
+    ]
+    if not cells:
+        raise WorkflowError(
+            "config/config.yaml: coverage: found no regime or no simulated platform, expected at least one of each; "
+            "add them under coverage.regimes and platforms"
+        )
+    return cells

@@ -57,8 +57,10 @@ def noise_models(table: pd.DataFrame, hand_pose: Floats, true_pose: Floats | Non
 
 def noise_models_caption(table: pd.DataFrame) -> str:
     """How far the estimates of each model lie apart over the sets."""
-    told = []
+    told, n_sets = [], table["set"].nunique()
     for model, part in table.groupby("noise_model", sort=False):
+        if len(part) < n_sets:
+            continue
         spread = 1e3 * (part["r_y_m"].max() - part["r_y_m"].min())
         told.append(f"{spread:.0f} mm {model}")
     return (

@@ -7,6 +7,7 @@ import pandas as pd
 from scipy.stats import chi
 
 from linepose import experiment_schemas as schemas
+from linepose.errors import InputError
 from linepose.experiments.noise_models import ALL, INLIERS
 from linepose.figures.results import PlatformResults
 from linepose.likelihood.names import PUBLISHED, ROBUST, SHARED
@@ -40,8 +41,7 @@ def noise_models_section(results: PlatformResults) -> SectionOnPage | None:
 
 def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.DataFrame) -> str:
     """Which model to use and why, and what speaks against it."""
-    rows = estimates.set_index(["noise_model", "set"])
-    shared, published = rows.loc[(SHARED, INLIERS)], rows.loc[(PUBLISHED, INLIERS)]
+    shared, published = _estimate(estimates, SHARED, INLIERS), _estimate(estimates, PUBLISHED, INLIERS)
     factor = {model: _halves_factor(summary, model) for model in (PUBLISHED, SHARED)}
     sentences = [
         "The published model takes each line of a view to have a navigation error of its own; the shared model takes "
@@ -64,8 +64,8 @@ def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.Dat
         f"in {_POSE_HEADS[most].split(' (')[0]} ({in_sigmas[most]:.1f})."
     )
     if np.isfinite(shared["error_in_sigmas"]):
-        sentences.append(_truth_sentence(rows))
-    robust = rows.loc[(ROBUST, ALL)]
+        sentences.append(_truth_sentence(estimates))
+    robust = _estimate(estimates, ROBUST, ALL)
     sentences.append(
         f"The robust model with all {int(robust['n_observations'])} observations in lies {robust['mahalanobis']:.1f} "
         f"sigmas (six degrees of freedom, median {chi.median(N_PARAMETERS):.1f}) from the shared model's accepted "
@@ -73,6 +73,16 @@ def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.Dat
     )
     sentences.append(f"The data say least of {identified['weakest_in_words'].iloc[0]}.")
     return " ".join(sentences)
+
+
+def _estimate(estimates: pd.DataFrame, noise_model: str, name: str) -> pd.Series:
+    """The row of a model and a set; raises InputError where there is none."""
+    rows = estimates[(estimates["noise_model"] == noise_model) & (estimates["set"] == name)]
+    if rows.empty:
+        raise InputError(
+            "noise_models.parquet", f"no row of {noise_model}, {name}", "an estimate of it", "run its stage again"
+        )
+    return rows.iloc[0]
 
 
 def _robust_advice(distance: float) -> str:
@@ -102,14 +112,14 @@ def _recommendation(published: float, shared: float) -> str:
     )
 
 
-def _truth_sentence(rows: pd.DataFrame) -> str:
+def _truth_sentence(estimates: pd.DataFrame) -> str:
     told = []
     for model, name, words in (
         (PUBLISHED, INLIERS, "the published model after removal"),
         (SHARED, INLIERS, "the shared model after removal"),
         (ROBUST, ALL, "the robust model with every fault left in"),
     ):
-        row = rows.loc[(model, name)]
+        row = _estimate(estimates, model, name)
         told.append(f"{1e3 * row['position_error_m']:.0f} mm, {row['error_in_sigmas']:.1f} sigmas by {words}")
     return f"Against the truth of the simulation the error is {', '.join(told)}."
 
