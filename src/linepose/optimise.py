@@ -112,11 +112,12 @@ def _powell(likelihood: Likelihood, start: Floats, centre: Floats, half_width: F
 def climb(likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, search: Search | None = None) -> Optimum:
     """The optimum that BFGS reaches from parameters (P,) near it, within the same range around a start pose (6,).
 
-    Gradients are central differences, in one batch.
+    Gradients are central differences, in one batch. Raises InputError for a start that is not finite.
     """
     search = search or Search()
     half_width = likelihood.half_widths(search.half_width_m, search.half_width_rad)
-    return _climb(likelihood, np.asarray(parameters, dtype=float), likelihood.start(start), half_width)
+    centre = likelihood.start(check_pose(start, "start pose"))
+    return _climb(likelihood, np.asarray(parameters, dtype=float), centre, half_width)
 
 
 def _climb(likelihood: Likelihood, first: Floats, centre: Floats, half_width: Floats) -> Optimum:

@@ -25,9 +25,8 @@ from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.shared import SharedLikelihood, SharedPriors
 from linepose.observations import Survey
-from linepose.optimise import Optimum, laplace_covariance
+from linepose.optimise import Optimum, climb, laplace_covariance
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.quasi_newton import descend
 from linepose.rotations import Floats
 from linepose.simulate.settings import SimulationSettings
 
@@ -118,7 +117,7 @@ def estimate_row(
     An estimate that fails (the curvature leaves a direction open) has no region and so does not hold the truth: its
     credibilities are 1, and what it has no number for is NaN.
     """
-    found = descend(likelihood, start_pose)
+    found = climb(likelihood, likelihood.start(start_pose), start_pose)
     row = failed_row(found)
     try:
         covariance = laplace_covariance(likelihood, found.parameters)

@@ -1,1 +1,7 @@
 """Noise models of the reprojected points (Eq. 11-22): each a file, all behind one class."""
+
+from pathlib import Path
+
+from linepose.compiled_cache import forget_outdated
+
+forget_outdated(Path(__file__).parent)
