@@ -5,7 +5,8 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.config.platform import LabelledViewsSection, Platform
+    from linepose.config.platform import Platform
+    from linepose.config.source import LabelledViewsSection
     from linepose.navigation import median_sigma_table
     from linepose.recorded import map_frame_table, read_reported, with_navigation
     from linepose.result_schemas import MAP_FRAME, NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS

@@ -5,7 +5,8 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.config.platform import LabelledViewsSection, Platform
+    from linepose.config.platform import Platform
+    from linepose.config.source import LabelledViewsSection
     from linepose.recorded import read_points
     from linepose.result_schemas import POINTS, SCAN_POINTS
     from linepose.storage import write_table

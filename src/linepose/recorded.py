@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from linepose.config.platform import LabelledViewsSection, Platform, ScansSection
+from linepose.config.platform import Platform
+from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.extraction.labelled_views import read_labelled_views, select_views
 from linepose.extraction.refine import METHODS
 from linepose.extraction.scan_survey import detected_points, refined_points, select_scans

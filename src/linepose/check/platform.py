@@ -18,15 +18,9 @@ from linepose.check.motion import motion_findings
 from linepose.check.prediction import predict
 from linepose.check.scans import scan_findings
 from linepose.check.views import view_findings
-from linepose.config.platform import (
-    LabelledViewsSection,
-    Platform,
-    ScansSection,
-    load_platform,
-    platform_faults,
-    read_yaml,
-)
+from linepose.config.platform import Platform, load_platform, platform_faults, read_yaml
 from linepose.config.project import Project
+from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.config.study import check_study
 from linepose.csv_files import read_numbers
 from linepose.datasets import check_dataset

@@ -7,7 +7,7 @@ import pandas as pd
 
 from linepose.check.finding import Finding, error, numbers, of_fault, of_faults, ok, warning
 from linepose.check.labels import sensor_findings
-from linepose.config.platform import ScansSection
+from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.extraction.scan_survey import select_scans
 from linepose.extraction.scans import scan_size

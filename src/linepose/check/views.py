@@ -8,7 +8,7 @@ import pandas as pd
 
 from linepose.check.finding import Finding, error, of_fault, of_faults
 from linepose.check.labels import pose_findings, repeated_findings, sensor_findings
-from linepose.config.platform import LabelledViewsSection
+from linepose.config.source import LabelledViewsSection
 from linepose.csv_files import check_microseconds, read_numbers
 from linepose.errors import InputError
 from linepose.extraction.labelled_views import read_labelled_views, select_views

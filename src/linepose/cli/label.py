@@ -8,7 +8,7 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 def label(name: Name, project: ProjectFolder = HERE) -> None:
     """Open a window to click the pattern's points over each scan; what was clicked is kept when it is closed."""
     from linepose.api import recorded_folder
-    from linepose.config.platform import ScansSection
+    from linepose.config.source import ScansSection
     from linepose.errors import InputError
     from linepose.project_folder import find_project, load_platform_project
 

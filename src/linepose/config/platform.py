@@ -1,7 +1,6 @@
 """The platform file: one camera on one vehicle, what it recorded, and how its data are to be read."""
 
 import difflib
-import glob
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -22,9 +21,9 @@ from pydantic import (
 from linepose.camera import Camera, CameraSigmas
 from linepose.config.experiments import ExperimentsSection
 from linepose.config.map_frame import MapFrameSection
-from linepose.config.navigation_formats import Navigation
 from linepose.config.outline import OutlineSection
 from linepose.config.schema import Section, faults_of, validated
+from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.errors import InputError
 from linepose.likelihood.names import NoiseModelName
 from linepose.likelihood.prior import PosePrior, pose_prior
@@ -99,88 +98,6 @@ class NavigationSection(Section):
         if len(set(columns)) < len(columns):
             raise ValueError("three different columns")
         return columns
-
-
-class LabelledViewsSection(Section):
-    """Labelled points that already carry the body pose: CSV files, one a view of the pattern."""
-
-    kind: Literal["labelled_views"] = Field(description="Points labelled by hand, one CSV file a view.")
-    dataset: str = Field(description="Data set, as named in the study's configuration.")
-    views: str = Field("labelled_points/*.csv", description="View files below the data set's folder, sorted by name.")
-    first: PositiveInt = Field(1, description="The first view file that is used (counted from 1).")
-    step: PositiveInt = Field(1, description="Every how many-th view file is used.")
-    covariances: str = Field("nav_covs.csv", description="File of the navigation covariances: time (us), 12x12.")
-
-    def files(self, folder: Path) -> set[Path]:
-        """Every file that is read, of a data set in this folder."""
-        return {*folder.glob(self.views), folder / self.covariances}
-
-
-class ScansSection(Section):
-    """Scan images with a time stamp for each line, and the navigation system's raw log."""
-
-    kind: Literal["scans"] = Field(description="Scan images, one a view of the pattern.")
-    dataset: str | None = Field(
-        None, description="Data set, as named in the study's configuration; none where the platform is simulated."
-    )
-    scans: str = Field(
-        "scans/*.hdr",
-        description="Scans (ENVI headers, PNG, TIFF) in the order of the observations, with their time stamps beside.",
-    )
-    time_stamps: Literal["csv", "resonon", "headwall"] = Field(
-        "csv",
-        description="Time stamps of a scan's lines: NAME-times.csv (us since 1970), Resonon's NAME.times and NAME.lcf, "
-        "or Headwall's frameIndex_N.txt beside raw_N.",
-    )
-    time_scale: Literal["unix", "gps"] | None = Field(
-        None,
-        description="Clock of the time stamps: Unix time, or since 1980-01-06 with leap seconds counted; if not given, "
-        "gps for resonon and unix for the others.",
-    )
-    left_out: tuple[PositiveInt, ...] = Field((), description="Numbers of observations that are not used.")
-    points: Literal["labels", "detection"] = Field(
-        "labels", description="Pattern points from approximate labels, or found without any."
-    )
-    labels: str = Field(
-        "labels.csv",
-        description="Labels: CSV (observation, point, u_px, line), CVAT for images 1.1 (.xml), or LabelMe (a pattern "
-        "of .json files, one a scan).",
-    )
-    refinement: Literal["centroid", "peak"] = Field(
-        "centroid",
-        description="Centre of a dot: intensity-weighted mean, or the enlarged patch's peak as in the paper.",
-    )
-    navigation: Navigation = Field(
-        "navigation.parquet",
-        description="Raw navigation log: path of Parquet or CSV with time_us, north_m, ..., yaw_rad, or a format with "
-        "its keys.",
-    )
-    covariances: str | None = Field(
-        None,
-        description="File of the navigation covariances: time (us), 12x12. If not given, covariances.csv beside a log "
-        "that is named by its path, else those in the log.",
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _of_our_own_table(cls, values: Any) -> Any:
-        own = isinstance(values, Mapping) and isinstance(values.get("navigation", ""), str)
-        return {"covariances": "covariances.csv", **values} if own else values
-
-    def files(self, folder: Path) -> set[Path]:
-        """Every file that is read, of a data set in this folder."""
-        scans = list(folder.glob(self.scans))
-        beside = {path for scan in scans for path in scan.parent.glob(f"{glob.escape(scan.stem)}[.-]*")}
-        beside |= {scan.with_suffix("") for scan in scans}  # run.bil of run.bil.hdr
-        if self.time_stamps == "resonon":
-            beside |= {path for scan in scans for suffix in ("*.times", "*.lcf") for path in scan.parent.glob(suffix)}
-        elif self.time_stamps == "headwall":
-            beside |= {path for scan in scans for path in scan.parent.glob("frameIndex_*.txt")}
-        labels = set(folder.glob(self.labels)) or {folder / self.labels} if self.points == "labels" else set()
-        navigation = self.navigation
-        log = {folder / navigation} if isinstance(navigation, str) else navigation.files(folder)
-        covariances = {folder / self.covariances} if self.covariances else set()
-        return {*(path for path in beside if path.is_file()), *scans, *labels, *log, *covariances}
 
 
 def _simulation(values: Any) -> Any:

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from linepose.config.platform import ScansSection
+from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.extraction.board_in_scan import BoardInScan, fit_board
 from linepose.extraction.scan_survey import select_scans

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linepose.config.navigation_formats import TimeScale
-from linepose.config.platform import ScansSection
+from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.extraction.scan_survey import select_scans
 from linepose.extraction.scans import LineTimes, check_line_times, read_times, times_path

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from linepose.config.platform import ScansSection
+from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.extraction.labels import read_labels
 from linepose.extraction.refine import METHODS, Refine

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from linepose.config.platform import ScansSection
+from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.extraction.scans import read_scan
 from linepose.formats.line_times import first_time_us, line_times_of

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from linepose.config.navigation_formats import NavigationFormatSection
-from linepose.config.platform import ScansSection
+from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.formats import gps_time
 from linepose.formats.line_times import first_time_us

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from linepose.config.navigation_formats import SbetSection
-from linepose.config.platform import ScansSection
+from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.formats import gps_time
 from linepose.formats.navigation import read_navigation
