@@ -49,7 +49,7 @@ def identifiability(table: pd.DataFrame, estimates: pd.DataFrame) -> Figure:
     levels.set_xticks([0.01, 0.1, 1.0, 10.0], ["0.01", "0.1", "1", "10"])
     levels.set_yticks(range(3), _NAMES)
     levels.set_ylim(2.6, -0.6)
-    levels.set_xlabel("Level (1: as stated)")
+    levels.set_xlabel("Level (as stated: 1)", x=1.0, ha="right")
     levels.grid(visible=False, axis="y")
     return figure
 
