@@ -35,7 +35,9 @@ bench: $(STAMP) ## Measure speed on this machine
 	@for name in machine likelihood pipeline experiments workflow scans shared; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
 
 readme-bench: $(STAMP) ## Measure speed and put the figures into README.md; on a machine that does nothing else
-	set -o pipefail; $(MAKE) --silent bench | $(BIN)/python benchmarks/into_readme.py
+	@mkdir -p build
+	$(MAKE) --silent bench > build/bench.txt
+	$(BIN)/python benchmarks/into_readme.py < build/bench.txt
 
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
 	$(BIN)/python -m linepose.config.reference
