@@ -76,3 +76,10 @@ def test_committed_configuration_is_whole():
     project = load_project(yaml.safe_load((ROOT / "config" / "config.yaml").read_text()), ROOT)
     assert set(project.study.platforms) <= set(project.platforms)
     assert {platform.source.dataset for platform in project.platforms.values()} - {None} <= set(project.datasets)
+
+
+@pytest.mark.parametrize("name", yaml.safe_load((ROOT / "config" / "config.yaml").read_text())["platforms"])
+def test_each_platform_of_the_committed_study_runs_alone(name):
+    """As `linepose run NAME` has it: nothing else in the configuration may need the others."""
+    values = yaml.safe_load((ROOT / "config" / "config.yaml").read_text()) | {"platforms": [name]}
+    assert load_project(values, ROOT).study.platforms == [name]
