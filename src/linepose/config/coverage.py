@@ -8,7 +8,7 @@ from linepose.config.schema import Section
 from linepose.experiments.coverage_survey import NoiseLevels
 
 Level = Annotated[float, Field(ge=0)]
-NoiseModelName = Literal["published", "shared", "anchored"]
+NoiseModelName = Literal["published", "shared", "balanced"]
 
 
 class RegimeSection(Section):
@@ -28,10 +28,10 @@ class RegimeSection(Section):
         False, description="Draw shared, white and pixel level for each survey from the model's priors instead."
     )
     noise_models: list[NoiseModelName] = Field(
-        ["published", "anchored"],
+        ["published", "shared", "balanced"],
         min_length=1,
-        description="published: the paper's. shared: navigation error shared within a view, levels inferred. anchored: "
-        "the same, determinants at the hand-measured pose.",
+        description="published: the paper's. shared: navigation error shared within a view, levels inferred. balanced: "
+        "the same, without the determinants' pull on the pose.",
     )
 
     @model_validator(mode="after")

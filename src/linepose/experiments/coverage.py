@@ -16,11 +16,11 @@ import numpy as np
 import pandas as pd
 from scipy.stats import chi2
 
+from linepose.balancing import balanced
 from linepose.camera import Camera
 from linepose.errors import EstimationError, InputError
 from linepose.experiments.coverage_survey import NoiseLevels, draw_survey, levels_from_prior
 from linepose.importance import WeightedSamples, importance_samples
-from linepose.likelihood.anchored import AnchoredLikelihood
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.shared import SharedLikelihood, SharedPriors
@@ -67,9 +67,9 @@ class Cell:
             return PublishedLikelihood(survey, self.camera)
         if self.noise_model == "shared":
             return SharedLikelihood(survey, self.camera)
-        if self.noise_model == "anchored":
-            return AnchoredLikelihood(survey, self.camera, self.start_pose)
-        raise InputError("noise model", self.noise_model, "published, shared or anchored", "correct the name")
+        if self.noise_model == "balanced":
+            return balanced(survey, self.camera, self.start_pose)
+        raise InputError("noise model", self.noise_model, "published, shared or balanced", "correct the name")
 
     def compile(self) -> None:
         """Evaluate the likelihood once, on one core, so that processes that fork from this one need not compile it."""

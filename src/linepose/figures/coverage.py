@@ -13,7 +13,7 @@ from linepose.experiments.coverage_summary import N_BINS, RMSE_COLUMNS, rank_his
 from linepose.figures.checks import usable_rows
 from linepose.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, WIDE_IN, blank_figure, styled
 
-_COLOURS: Final = {"published": RED, "shared": ORANGE, "anchored": BLUE}
+_COLOURS: Final = {"published": RED, "shared": ORANGE, "balanced": BLUE}
 _OTHERS: Final = (GREEN, PURPLE, BLACK)
 _PARAMETERS: Final = ("$r_x$", "$r_y$", "$r_z$", r"$\theta e_x$", r"$\theta e_y$", r"$\theta e_z$")
 

@@ -207,8 +207,8 @@ def linearise(arrays: SharedArrays, optics: Optics, levels: Levels, points_m: Fl
     """Fill `lines` at the points (K, 3); whether every point is in front of the camera.
 
     `W = a J F` and `D = b^2 J Q J^T + g^2 diag(sigma_u^2, sigma_v^2)`, with a, b, g the levels. Where the body's motion
-    matters, noise across the line has the direction and size of its image, `m = J motion` less what is allowed for:
-    `sigma_v^2 m m^T` in place of `diag(0, sigma_v^2)`.
+    matters, `l^2 = sigma_v^2 g^2 / (1 + g^8)^(1/4)` of the noise across the line is a point that is late. It has the
+    direction and size of the motion's image, `m = J motion` less what is allowed for: `l^2 m m^T` in its place.
     """
     by_body, offset = np.empty((2, 6)), np.empty(3)
     by_u, by_v = by_body[0], by_body[1]
@@ -235,16 +235,17 @@ def linearise(arrays: SharedArrays, optics: Optics, levels: Levels, points_m: Fl
             uu += along * by_u[c]
             uv += along * by_v[c]
             vv += across * by_v[c]
-        along, across = 0.0, 1.0
+        noise_u2, noise_v2 = pixel2 * optics.sigma_u_px**2, pixel2 * optics.sigma_v_px**2
+        uu, uv, vv = white2 * uu + noise_u2, white2 * uv, white2 * vv + noise_v2
         if not np.isnan(arrays.motion[line, 0]):
             along, across = -arrays.motion[line, 6], 0.0
             for c in range(6):
                 along += by_u[c] * arrays.motion[line, c]
                 across += by_v[c] * arrays.motion[line, c]
-        noise_u2, noise_v2 = pixel2 * optics.sigma_u_px**2, pixel2 * optics.sigma_v_px**2
-        uu = white2 * uu + noise_u2 + noise_v2 * along * along
-        uv = white2 * uv + noise_v2 * along * across
-        vv = white2 * vv + noise_v2 * across * across
+            late2 = noise_v2 / np.sqrt(np.sqrt(1.0 + pixel2**4))  # below the camera's sigma all of it, at most that
+            uu += late2 * along * along
+            uv += late2 * along * across
+            vv += late2 * (across * across - 1.0)
         determinant = uu * vv - uv * uv
         lines.precision[line, 0] = vv / determinant
         lines.precision[line, 1] = -uv / determinant

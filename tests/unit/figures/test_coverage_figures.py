@@ -15,7 +15,7 @@ from linepose.tables.coverage import coverage_table
 def surveys() -> pd.DataFrame:
     random, parts = np.random.default_rng(1), []
     for regime in ("white", "shared"):
-        for model in ("published", "anchored"):
+        for model in ("published", "balanced"):
             n = 40
             parts.append(
                 pd.DataFrame(
@@ -39,7 +39,7 @@ def test_a_panel_for_each_platform_and_regime(surveys):
 
 
 def test_ranks_have_a_row_a_cell_and_a_column_a_parameter(surveys):
-    assert len(figures.ranks(surveys, "anchored").axes) == 2 * 6
+    assert len(figures.ranks(surveys, "balanced").axes) == 2 * 6
     assert len(figures.ranks(surveys, "published").axes) == 1 * 6  # the cell of which all failed has none
 
 
