@@ -11,10 +11,8 @@ with stage(snakemake) as log:
     from linepose.experiment_schemas import CLOCK_OFFSET
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.clock_offset import Without, estimate_clock_offset
-    from linepose.likelihood.base import Likelihood
     from linepose.likelihood.clock_offset import with_clock_offset
-    from linepose.likelihood.models import likelihood_of
-    from linepose.observations import Survey
+    from linepose.noise_models import likelihoods_alike
     from linepose.recorded import read_log
     from linepose.result_schemas import SAMPLES, with_parameters
     from linepose.sampling import stage_seed
@@ -28,10 +26,9 @@ with stage(snakemake) as log:
     reference = read_reference(accepted, snakemake.input.optima, snakemake.input.samples)
     without = Without(reference.pose, reference.covariance, -accepted.log_likelihood(reference.parameters))
     raw_log = read_log(platform, Path(snakemake.params.folder))
-
-    def model(survey: Survey) -> Likelihood:
-        return likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
-
+    model = likelihoods_alike(
+        platform.noise_model, accepted.survey, platform.intrinsics(), platform.start_pose(), platform.pose_prior()
+    )
     likelihood = with_clock_offset(accepted.survey, raw_log, maximum_s, model)
     seed = stage_seed(snakemake.params.seed, accepted.survey.n_observations, 1)
     table, samples = estimate_clock_offset(likelihood, without, platform.start_pose(), seed, search, settings)

@@ -20,7 +20,7 @@ with stage(snakemake) as log:
         noise_model_table,
         weights_table,
     )
-    from linepose.likelihood.names import PUBLISHED, ROBUST, SHARED
+    from linepose.likelihood.names import BALANCED, PUBLISHED, ROBUST, SHARED
     from linepose.storage import write_table
 
     params, files = snakemake.params, snakemake.input
@@ -33,7 +33,7 @@ with stage(snakemake) as log:
     pair = named_pair(data, repeatability, params.file)
     sets |= {name: data.accepted.survey.select(list(numbers)) for name, numbers in pair.items()}
     independence = sampling_settings(params.independence_sampling)
-    settings = {PUBLISHED: sampling_settings(params.sampling), SHARED: independence}
+    settings = {PUBLISHED: sampling_settings(params.sampling), SHARED: independence, BALANCED: independence}
     settings[ROBUST] = replace(independence, n_steps=params.robust_steps)
     search = SearchSection.model_validate(params.search).settings()
     fits = []

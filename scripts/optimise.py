@@ -5,9 +5,9 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection
-    from linepose.likelihood.models import likelihood_of
     from linepose.observations import survey_from_table
     from linepose.outliers import stage_observations
+    from linepose.platform_likelihood import platform_likelihood
     from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, laplace_sigma_columns, with_parameters
     from linepose.stages import optimise_stages
     from linepose.storage import read_table, write_table
@@ -15,7 +15,7 @@ with stage(snakemake) as log:
     platform = Platform.model_validate(snakemake.params.platform)
     search = SearchSection.model_validate(snakemake.params.search).settings()
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
+    likelihood = platform_likelihood(platform, survey)
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
     names = likelihood.parameter_names[6:]
     schema = with_parameters(OPTIMA, [*names, *laplace_sigma_columns(names)])

@@ -5,9 +5,9 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import OutliersSection, SearchSection
-    from linepose.likelihood.models import likelihood_of
     from linepose.observations import survey_from_table
     from linepose.outliers import outlier_table, reject_outliers, removal_order
+    from linepose.platform_likelihood import platform_likelihood
     from linepose.result_schemas import OBSERVATIONS, OUTLIERS
     from linepose.storage import read_table, write_table
 
@@ -15,7 +15,7 @@ with stage(snakemake) as log:
     outliers = OutliersSection.model_validate(snakemake.params.outliers)
     search = SearchSection.model_validate(snakemake.params.search).settings()
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
+    likelihood = platform_likelihood(platform, survey)
     stages = reject_outliers(likelihood, platform.start_pose(), outliers.minimum_observations, search)
     table = outlier_table(stages, outliers.threshold_px)
     write_table(table, snakemake.output[0], OUTLIERS)

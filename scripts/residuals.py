@@ -4,16 +4,16 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.likelihood.models import likelihood_of
     from linepose.observations import survey_from_table
     from linepose.outliers import stage_observations
+    from linepose.platform_likelihood import platform_likelihood
     from linepose.residual_tables import residual_tables
     from linepose.result_schemas import ESTIMATED_POINTS, OBSERVATIONS, OPTIMA, OUTLIERS, RESIDUALS
     from linepose.storage import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
+    likelihood = platform_likelihood(platform, survey)
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
     kept = {name: stages[name] for name in ("all", "inliers")}
     optima = read_table(snakemake.input.optima, OPTIMA).set_index("stage")[list(likelihood.parameter_names)]

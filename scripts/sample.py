@@ -7,9 +7,9 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import sampling_settings
-    from linepose.likelihood.models import likelihood_of
     from linepose.observations import survey_from_table
     from linepose.outliers import stage_observations
+    from linepose.platform_likelihood import platform_likelihood
     from linepose.progress import shown
     from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, SAMPLES, with_parameters
     from linepose.sampling import sample, stage_seed
@@ -19,7 +19,7 @@ with stage(snakemake) as log:
     platform = Platform.model_validate(snakemake.params.platform)
     settings = sampling_settings(snakemake.params.sampling)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
+    likelihood = platform_likelihood(platform, survey)
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))
     names = likelihood.parameter_names
     optima = read_table(snakemake.input.optima, OPTIMA).set_index("stage")[list(names)]

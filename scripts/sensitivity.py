@@ -8,9 +8,9 @@ with stage(snakemake) as log:
     from linepose.experiment_schemas import SENSITIVITY
     from linepose.experiments.accepted import read_accepted
     from linepose.experiments.sensitivity import camera_changes, sensitivity
-    from linepose.likelihood.models import likelihood_of
     from linepose.likelihood.names import PUBLISHED
     from linepose.likelihood.pixels import PixelLikelihood
+    from linepose.platform_likelihood import platform_likelihood
     from linepose.storage import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
@@ -20,7 +20,7 @@ with stage(snakemake) as log:
     if platform.noise_model == PUBLISHED:  # the other models' residuals are in pixels
         changes["residual in pixels"] = PixelLikelihood(nominal)
     for name, camera in camera_changes(platform.intrinsics()).items():
-        changes[name] = likelihood_of(platform.noise_model, nominal.survey, camera, platform.pose_prior())
+        changes[name] = platform_likelihood(platform, nominal.survey, camera)
     files = zip(snakemake.input.other_observations, snakemake.input.other_outliers, strict=True)
     for (name, other), (observations, outliers) in zip(snakemake.params.others.items(), files, strict=True):
         alike = Platform.model_validate(other | {"noise_model": platform.noise_model})

@@ -14,9 +14,9 @@ from linepose.calibrated import Calibration, HandMeasured
 from linepose.camera import Camera
 from linepose.diagnostics import diagnose_samples
 from linepose.errors import InputError
-from linepose.likelihood.models import NOISE_MODELS, likelihood_of
 from linepose.likelihood.names import PUBLISHED
 from linepose.likelihood.prior import pose_prior
+from linepose.noise_models import NOISE_MODELS, likelihood_of
 from linepose.observations import (
     COVARIANCE_COLUMNS,
     EULER_COLUMNS,
@@ -86,7 +86,7 @@ def calibrate(
     check_determined(survey, N_PARAMETERS)
     start, hand_covariance = hand_measured.pose, hand_measured.covariance
     prior = pose_prior(start, hand_covariance) if settings.prior == "hand_measured" else None
-    likelihood = likelihood_of(settings.noise_model, survey, camera, prior)
+    likelihood = likelihood_of(settings.noise_model, survey, camera, start, prior)
     stages = reject_outliers(likelihood, start, settings.minimum_observations, settings.search)
     outliers = outlier_table(stages, settings.threshold_px)
     accepted = {_STAGE: stage_observations(outliers)[_STAGE]}

@@ -7,9 +7,9 @@ import pandas as pd
 
 from linepose.camera import Camera
 from linepose.likelihood.clock_offset import ClockOffsetLikelihood, with_clock_offset
-from linepose.likelihood.models import likelihood_of
 from linepose.navigation import NavigationCovariances, associate_covariances
 from linepose.navigation_log import NavigationLog, associate_poses, interpolated_pose
+from linepose.noise_models import likelihood_of
 from linepose.observations import EULER_COLUMNS, POSITION_COLUMNS, Survey, survey_from_table
 from linepose.simulate.navigation_error import white_per_line
 from linepose.simulate.projection import exact_projections
@@ -19,6 +19,7 @@ from linepose.simulate.survey import reported_covariance, without_faults
 from linepose.simulate.trajectory import time_us
 
 MAXIMUM_S = 0.1
+NO_START = np.zeros(6)  # only the balanced model needs one
 
 
 def honest(settings: SimulationSettings) -> SimulationSettings:
@@ -74,4 +75,4 @@ def likelihood(
     camera: Camera, survey: Survey, log: NavigationLog, maximum_s: float = MAXIMUM_S, noise_model: str = "published"
 ) -> ClockOffsetLikelihood:
     """The noise model of the survey with the offset, up to 100 ms unless said otherwise."""
-    return with_clock_offset(survey, log, maximum_s, lambda one: likelihood_of(noise_model, one, camera))
+    return with_clock_offset(survey, log, maximum_s, lambda one: likelihood_of(noise_model, one, camera, NO_START))

@@ -6,8 +6,8 @@ import pytest
 from linepose.config.platform import load_platform
 from linepose.errors import InputError
 from linepose.likelihood.clock_offset import STEPS, ClockOffsetLikelihood
-from linepose.likelihood.models import likelihood_of
 from linepose.navigation_motion import survey_at, survey_motions
+from linepose.noise_models import likelihood_of
 from linepose.pose import POSE_COLUMNS
 
 from . import clock_survey
@@ -29,7 +29,7 @@ def model(simulated):
 def at(simulated, offset_s):
     platform, survey, log = simulated
     moved = survey_at(survey, survey_motions(log, survey, 0.1 * (1 + 2 / STEPS)), offset_s)
-    return likelihood_of("published", moved, platform.intrinsics())
+    return likelihood_of("published", moved, platform.intrinsics(), platform.start_pose())
 
 
 @pytest.mark.parametrize("offset_s", [-0.1, -0.0437, 0.0, 0.00123, 0.0289, 0.1])
@@ -46,7 +46,7 @@ def test_it_is_the_model_of_the_survey_at_that_offset(simulated, model, offset_s
 def test_at_no_offset_it_is_the_model_itself(simulated, model):
     platform, survey, _ = simulated
     pose = np.array(platform.simulation.true_pose)
-    plain = likelihood_of("published", survey, platform.intrinsics())
+    plain = likelihood_of("published", survey, platform.intrinsics(), platform.start_pose())
     assert model.log_likelihood(np.append(pose, 0.0)) == pytest.approx(plain.log_likelihood(pose), rel=1e-9)
     assert model.parameter_names == (*POSE_COLUMNS, "clock_offset_s")
     np.testing.assert_array_equal(model.start(pose), [*pose, 0.0])

@@ -32,7 +32,7 @@ def test_models_are_side_by_side(finished):
     results = finished.folder / "results" / "tiny"
     table = pd.read_parquet(results / "noise_models.parquet")
     assert table[["noise_model", "set"]].to_numpy().tolist() == [
-        [model, name] for name in ("all", "inliers") for model in ("published", "shared", "robust")
+        [model, name] for name in ("all", "inliers") for model in ("published", "shared", "balanced", "robust")
     ]
     published = table[table["noise_model"] == "published"].set_index("set")
     own = pd.read_parquet(results / "optima.parquet").set_index("stage")

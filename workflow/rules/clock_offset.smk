@@ -25,7 +25,7 @@ rule clock_offset:
             source_digest("linepose.experiments.clock_offset"),
             source_digest("linepose.recorded"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.likelihood.models"),
+            source_digest("linepose.noise_models"),
         ],
     script:
         "../../scripts/clock_offset.py"

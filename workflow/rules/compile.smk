@@ -6,6 +6,6 @@ rule compile:
     conda:
         "../../environment.yml"
     params:
-        code=source_digest("linepose.likelihood.warm_up"),
+        code=source_digest("linepose.warm_up"),
     script:
         "../../scripts/compile.py"

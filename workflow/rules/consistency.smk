@@ -27,7 +27,7 @@ rule consistency:
             source_digest("linepose.experiments.consistency"),
             source_digest("linepose.batches"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.likelihood.models"),
+            source_digest("linepose.noise_models"),
         ],
     script:
         "../../scripts/consistency.py"

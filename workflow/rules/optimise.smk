@@ -14,7 +14,7 @@ rule optimise:
         search=section("search"),
         code=[
             source_digest("linepose.stages"),
-            source_digest("linepose.likelihood.models"),
+            source_digest("linepose.noise_models"),
         ],
     script:
         "../../scripts/optimise.py"

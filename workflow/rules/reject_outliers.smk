@@ -14,7 +14,7 @@ rule reject_outliers:
         search=section("search"),
         code=[
             source_digest("linepose.outliers"),
-            source_digest("linepose.likelihood.models"),
+            source_digest("linepose.noise_models"),
         ],
     script:
         "../../scripts/reject_outliers.py"

@@ -15,7 +15,7 @@ rule residuals:
         platform=settings,
         code=[
             source_digest("linepose.residual_tables"),
-            source_digest("linepose.likelihood.models"),
+            source_digest("linepose.noise_models"),
         ],
     script:
         "../../scripts/residuals.py"

@@ -17,7 +17,7 @@ rule sample:
         seed=STUDY.seed,
         code=[
             source_digest("linepose.stages"),
-            source_digest("linepose.likelihood.models"),
+            source_digest("linepose.noise_models"),
         ],
     script:
         "../../scripts/sample.py"

@@ -22,7 +22,7 @@ rule splits:
             source_digest("linepose.experiments.repeatability"),
             source_digest("linepose.batches"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.likelihood.models"),
+            source_digest("linepose.noise_models"),
         ],
     script:
         "../../scripts/splits.py"

@@ -143,7 +143,8 @@ class Platform(Section):
         "published",
         description="The likelihood's model of the noise. published: every line of a view errs independently, as "
         "reported (the paper). shared: the navigation error is common to a view, its level inferred (recommended). "
-        "robust: shared, with heavy tails for bad views and points.",
+        "balanced: shared, without the determinants' pull on the pose. robust: shared, with heavy tails for bad views "
+        "and points.",
     )
     prior: Literal["none", "hand_measured"] = Field(
         "none",

@@ -97,7 +97,7 @@ class Study(Section):
     outliers: OutliersSection = Field(OutliersSection(), description="Outlier removal.")
     sampling: SamplingSection = Field(SamplingSection(), description="MCMC of the published noise model.")
     independence_sampling: IndependenceSamplingSection = Field(
-        IndependenceSamplingSection(), description="MCMC of the noise models shared and robust."
+        IndependenceSamplingSection(), description="MCMC of the noise models shared, balanced and robust."
     )
     coverage: CoverageSection = Field(CoverageSection(), description="Coverage study; not part of the main job.")
 

@@ -10,9 +10,9 @@ from linepose.config.experiments import RepeatabilitySection, SubsetSection
 from linepose.config.platform import Platform
 from linepose.experiments.subsets import check_subset, draw_by_rules
 from linepose.likelihood.base import Likelihood
-from linepose.likelihood.models import likelihood_of
 from linepose.observations import survey_from_table
 from linepose.outliers import stage_observations
+from linepose.platform_likelihood import platform_likelihood
 from linepose.pose import N_PARAMETERS
 from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, SAMPLES
 from linepose.rotations import Floats
@@ -57,7 +57,7 @@ class Reference:
 def read_accepted(platform: Platform, observations: Path | str, outliers: Path | str) -> Accepted:
     """From the results of the stages `associate` and `reject_outliers`."""
     survey = survey_from_table(read_table(observations, OBSERVATIONS))
-    likelihood = likelihood_of(platform.noise_model, survey, platform.intrinsics(), platform.pose_prior())
+    likelihood = platform_likelihood(platform, survey)
     inliers = stage_observations(read_table(outliers, OUTLIERS))["inliers"]
     return Accepted(likelihood, likelihood.select(inliers))
 

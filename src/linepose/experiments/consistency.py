@@ -20,11 +20,11 @@ from linepose.errors import InputError
 from linepose.experiments.estimate import Estimate, estimate_nearby
 from linepose.experiments.repeatability import consistency, split_numbers
 from linepose.likelihood.base import Likelihood
-from linepose.likelihood.models import likelihood_of
 from linepose.likelihood.names import PUBLISHED, SHARED
+from linepose.noise_models import likelihood_of
 from linepose.observations import Survey
 from linepose.optimise import Search
-from linepose.pose import N_PARAMETERS
+from linepose.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.rotations import Floats
 
 NAMED_SUBSETS: Final = "the two named subsets"
@@ -128,8 +128,9 @@ def groups_of(
     for noise_model in (PUBLISHED, SHARED):
         groups[noise_model] = {}
         for name, survey in surveys.items():
-            likelihood = likelihood_of(noise_model, survey, camera)
-            row = known.loc[(noise_model, sets[name]), list(likelihood.parameter_names)]
+            estimate = known.loc[(noise_model, sets[name])]
+            likelihood = likelihood_of(noise_model, survey, camera, estimate[list(POSE_COLUMNS)].to_numpy(dtype=float))
+            row = estimate[list(likelihood.parameter_names)]
             groups[noise_model][name] = Group(likelihood, row.to_numpy(dtype=float))
     return groups
 

@@ -19,10 +19,10 @@ from linepose.errors import InputError
 from linepose.experiments.estimate import observation_list
 from linepose.identifiability import identifiability, in_body_axes, in_words
 from linepose.likelihood.base import Likelihood
-from linepose.likelihood.models import likelihood_of
-from linepose.likelihood.names import ROBUST, SHARED
+from linepose.likelihood.names import BALANCED, ROBUST, SHARED
 from linepose.likelihood.robust import RobustSharedLikelihood
 from linepose.likelihood.shared import LEVEL_NAMES, SHARED_PARAMETERS, SharedLikelihood
+from linepose.noise_models import likelihood_of
 from linepose.observations import Survey
 from linepose.optimise import Optimum, Search, optimise
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
@@ -30,7 +30,7 @@ from linepose.rotations import Floats
 from linepose.sampling import Chain, IndependenceSettings, SamplingSettings, sample, section_of, stage_seed
 
 ALL, INLIERS = "all", "inliers"
-_WHERE_ROBUST: Final = (ALL, INLIERS)  # it stands against the removal; elsewhere it would cost ten times the rest
+_ONLY_ON: Final = dict.fromkeys((BALANCED, ROBUST), (ALL, INLIERS))  # elsewhere they would cost more than they tell
 EXTRA_PARAMETERS: Final = SHARED_PARAMETERS[N_PARAMETERS:]
 LEVELS: Final = tuple(name.removeprefix("log_") for name in LEVEL_NAMES)
 _QUANTILES: Final = {"": 0.5, "_low": 0.16, "_high": 0.84}
@@ -70,13 +70,13 @@ def fit_noise_models(
 ) -> Iterator[Fit]:
     """Each noise model of `settings`, by name with its sampling, fitted to each set, from a start pose (6,).
 
-    The robust one is fitted to all observations and to the accepted ones only.
+    The balanced and the robust one are fitted to all observations and to the accepted ones only.
     """
     for place, (name, survey) in enumerate(sets.items()):
         for noise_model, how in settings.items():
-            if noise_model == ROBUST and name not in _WHERE_ROBUST:
+            if name not in _ONLY_ON.get(noise_model, sets):
                 continue
-            likelihood = likelihood_of(noise_model, survey, camera)
+            likelihood = likelihood_of(noise_model, survey, camera, start)
             optimum = optimise(likelihood, start, search)
             chain = sample(likelihood, optimum.parameters, stage_seed(seed, place), how)
             yield Fit(

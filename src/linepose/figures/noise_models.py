@@ -7,12 +7,12 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from linepose.figures.checks import usable_rows
-from linepose.figures.style import BLUE, GREY, ORANGE, PURPLE, WIDE_IN, blank_figure, styled
+from linepose.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, WIDE_IN, blank_figure, styled
 from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.rotations import Floats
 
-COLOURS: Final = {"published": ORANGE, "shared": BLUE, "robust": PURPLE}
-_MARKERS: Final = {"published": "s", "shared": "o", "robust": "^"}
+COLOURS: Final = {"published": ORANGE, "shared": BLUE, "balanced": GREEN, "robust": PURPLE}
+_MARKERS: Final = {"published": "s", "shared": "o", "balanced": "D", "robust": "^"}
 _NAMES: Final = ("$r_x$ (m)", "$r_y$ (m)", "$r_z$ (m)", *(rf"$\theta e_{axis}$ (rad)" for axis in "xyz"))
 _SPREAD: Final = 0.5  # of a row, over which the models are laid out
 _ROW_IN, _ROOM_IN = 0.24, 0.9

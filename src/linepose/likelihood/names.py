@@ -2,9 +2,10 @@
 
 from typing import Final, Literal
 
-NoiseModelName = Literal["published", "shared", "robust"]
+NoiseModelName = Literal["published", "shared", "balanced", "robust"]
 PUBLISHED: Final = "published"
 SHARED: Final = "shared"
+BALANCED: Final = "balanced"
 ROBUST: Final = "robust"
 
 

@@ -10,7 +10,7 @@ from linepose import experiment_schemas as schemas
 from linepose.errors import InputError
 from linepose.experiments.noise_models import ALL, INLIERS
 from linepose.figures.results import PlatformResults
-from linepose.likelihood.names import PUBLISHED, ROBUST, SHARED
+from linepose.likelihood.names import BALANCED, PUBLISHED, ROBUST, SHARED
 from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.report.sections import SectionOnPage, TableOnPage
 
@@ -117,6 +117,7 @@ def _truth_sentence(estimates: pd.DataFrame) -> str:
     for model, name, words in (
         (PUBLISHED, INLIERS, "the published model after removal"),
         (SHARED, INLIERS, "the shared model after removal"),
+        (BALANCED, INLIERS, "the balanced model after removal"),
         (ROBUST, ALL, "the robust model with every fault left in"),
     ):
         row = _estimate(estimates, model, name)

@@ -16,7 +16,7 @@ from linepose.sampling import IndependenceSettings, SamplingSettings
 from ..likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 SHORT = IndependenceSettings(n_walkers=24, n_burn_in=40, n_steps=30)
-SETTINGS = {"published": SamplingSettings(12, 5, 20), "shared": SHORT, "robust": SHORT}
+SETTINGS = {"published": SamplingSettings(12, 5, 20), "shared": SHORT, "balanced": SHORT, "robust": SHORT}
 BAD_VIEW = 4
 
 

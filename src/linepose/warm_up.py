@@ -3,7 +3,7 @@
 import numpy as np
 
 from linepose.camera import Camera
-from linepose.likelihood.models import likelihood_of
+from linepose.noise_models import likelihood_of
 from linepose.observations import Survey
 
 _CAMERA = Camera(focal_length_m=8e-3, pixel_pitch_m=8e-6, n_pixels=600, principal_point_px=300.0)
@@ -13,7 +13,7 @@ _N_POINTS = 3
 
 def warm_up(noise_model: str) -> None:
     """Evaluate a noise model, by name, once in every way that there is."""
-    likelihood = likelihood_of(noise_model, _survey(), _CAMERA)
+    likelihood = likelihood_of(noise_model, _survey(), _CAMERA, np.zeros(6))
     parameters = likelihood.start(np.zeros(6))
     likelihood.log_likelihood(parameters)
     likelihood.log_likelihoods(np.tile(parameters, (2, 1)))

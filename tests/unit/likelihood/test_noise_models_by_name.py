@@ -7,9 +7,9 @@ import pytest
 from small_survey import CAMERA, POSE, Truth, make_survey, without
 
 from linepose.errors import LineposeError
-from linepose.likelihood.models import NOISE_MODELS, likelihood_of
 from linepose.likelihood.names import NoiseModelName
 from linepose.likelihood.shared import SharedLikelihood
+from linepose.noise_models import NOISE_MODELS, likelihood_of
 
 MODELS = pytest.mark.parametrize("noise_model", NOISE_MODELS)
 
@@ -25,7 +25,7 @@ def test_zero_and_singular_covariances_have_a_likelihood_and_residuals(noise_mod
     values, vectors = np.linalg.eigh(survey.covariance)
     values[..., rank:] = 0.0
     survey.covariance[:] = (vectors * values[..., None, :]) @ np.swapaxes(vectors, -1, -2)
-    likelihood = likelihood_of(noise_model, survey, CAMERA)
+    likelihood = likelihood_of(noise_model, survey, CAMERA, POSE)
     parameters = likelihood.start(POSE)
     assert np.isfinite(likelihood.log_likelihood(parameters))
     assert np.all(np.isfinite(likelihood.residuals(parameters).sigma_px))
@@ -35,10 +35,10 @@ def test_zero_and_singular_covariances_have_a_likelihood_and_residuals(noise_mod
 def test_a_view_of_one_point_counts_as_one_line(noise_model):
     survey = make_survey(5, 4, Truth(0.5), seed=3)
     single = without(survey, (2, 0), (2, 1), (2, 2))
-    likelihood = likelihood_of(noise_model, single, CAMERA)
+    likelihood = likelihood_of(noise_model, single, CAMERA, POSE)
     parameters = likelihood.start(POSE)
     value = likelihood.log_likelihood(parameters)
-    absent = likelihood_of(noise_model, without(single, (2, 3)), CAMERA).log_likelihood(parameters)
+    absent = likelihood_of(noise_model, without(single, (2, 3)), CAMERA, POSE).log_likelihood(parameters)
     assert np.isfinite(value)
     assert value != absent
     assert np.isfinite(likelihood.residuals(parameters).error_px).sum() == 17
@@ -46,7 +46,7 @@ def test_a_view_of_one_point_counts_as_one_line(noise_model):
 
 @MODELS
 def test_a_point_behind_the_camera_is_impossible_and_not_undefined(noise_model):
-    likelihood = likelihood_of(noise_model, make_survey(4, 3, Truth(), seed=6), CAMERA)
+    likelihood = likelihood_of(noise_model, make_survey(4, 3, Truth(), seed=6), CAMERA, POSE)
     # turned about its x axis by half a turn, the camera looks away from the pattern
     behind = likelihood.start([*POSE[:3], 2.2, 2.1, -1.0])
     one, many = likelihood.log_likelihood(behind), likelihood.log_likelihoods(np.stack([behind, behind]))
@@ -59,7 +59,7 @@ def test_an_observed_point_without_a_pose_is_refused(noise_model):
     survey = make_survey(3, 2, Truth(), seed=6)
     survey.position_m[1, 0] = np.nan
     with pytest.raises(LineposeError):
-        likelihood_of(noise_model, survey, CAMERA)
+        likelihood_of(noise_model, survey, CAMERA, POSE)
 
 
 @pytest.mark.statistical
