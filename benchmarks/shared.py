@@ -21,10 +21,13 @@ import small_survey
 
 from linepose.camera import Camera
 from linepose.diagnostics import diagnose_samples
+from linepose.likelihood.balanced import BalancedLikelihood
+from linepose.likelihood.names import BALANCED, ROBUST, SHARED
 from linepose.likelihood.robust import RobustSharedLikelihood
 from linepose.likelihood.shared import SharedLikelihood
 from linepose.likelihood.shared_kernel import empty_lines, levels_at, linearise, optics_at
 from linepose.likelihood.shared_marginal import initial_points
+from linepose.noise_models import likelihood_of
 from linepose.observations import Survey
 from linepose.optimise import optimise
 from linepose.rotations import Floats
@@ -111,7 +114,7 @@ def report(likelihood: SharedLikelihood, pose: Floats, draw_chain: bool) -> None
     rows = vector + 0.1 * SCALE * np.random.default_rng(SEED).normal(size=(256, 11))
     batch, _ = milliseconds(lambda: likelihood.log_likelihoods(rows), 1)
     print(f"  one of a batch     {batch / len(rows):8.3f} ms wall")
-    if not isinstance(likelihood, RobustSharedLikelihood):
+    if not isinstance(likelihood, BalancedLikelihood | RobustSharedLikelihood):
         dense, dense_thread = milliseconds(dense_evaluation(likelihood, vector), 2)
         print(f"  dense matrices     {dense:8.3f} ms wall, {dense_thread:8.3f} ms thread")
         print(f"  ratio              {dense_thread / thread:8.0f}")
@@ -120,15 +123,17 @@ def report(likelihood: SharedLikelihood, pose: Floats, draw_chain: bool) -> None
 
 
 def main() -> None:
-    """Print the measurements of both models, on sixteen and on all observations."""
+    """Print the measurements of the models with levels, on sixteen and on all observations."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robust-chain", action="store_true", help="draw the robust model's chains too")
     with_robust = parser.parse_args().robust_chain
     survey, camera, pose, sixteen = survey_and_camera()
     print("field data" if field_data.PRESENT else "simulated survey")
-    for model in (SharedLikelihood, RobustSharedLikelihood):
+    for name in (SHARED, BALANCED, ROBUST):
         for numbers in (sixteen, tuple(int(number) for number in survey.number)):
-            report(model(survey.select(numbers), camera), pose, model is SharedLikelihood or with_robust)
+            likelihood = likelihood_of(name, survey.select(numbers), camera, pose)
+            assert isinstance(likelihood, SharedLikelihood)
+            report(likelihood, pose, name != ROBUST or with_robust)
 
 
 if __name__ == "__main__":

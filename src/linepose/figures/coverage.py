@@ -41,7 +41,7 @@ def coverage(curve: pd.DataFrame) -> Figure:
                 panel.plot(line["nominal"], line["coverage"], color=colour, linewidth=1.0)
             panel.set(xlim=(0, 1), ylim=(0, 1), xticks=[0, 0.5, 1], yticks=[0, 0.5, 1])
             if i == 0:
-                panel.set_title(regime)
+                panel.set_title(regime.replace("-", "\n"))
         panels[i, 0].set_ylabel(f"{platform}\nholds the truth")
     panels[-1, len(regimes) // 2].set_xlabel("Stated probability of the region")
     _legend(figure, _names(rows, "noise_model"))

@@ -16,6 +16,7 @@ from linepose.report.sections import SectionOnPage, TableOnPage
 
 _POSE_HEADS: Final = ("r_x (m)", "r_y (m)", "r_z (m)", "theta e_x (rad)", "theta e_y (rad)", "theta e_z (rad)")
 _LEVELS: Final = ("shared_level", "white_level", "pixel_level")
+_CLOSE: Final = 0.68  # content of the region around the shared estimate, within which the balanced one says the same
 _FAR: Final = 0.999  # content of the region around the shared estimate, beyond which the robust one is another pose
 _WELL_MATCHED: Final = (0.8, 1.25)  # factors on the sigmas that are no reason to change them
 
@@ -65,6 +66,11 @@ def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.Dat
     )
     if np.isfinite(shared["error_in_sigmas"]):
         sentences.append(_truth_sentence(estimates))
+    balanced = _estimate(estimates, BALANCED, INLIERS)
+    sentences.append(
+        "The balanced model, in which distance alone explains no error better, lies "
+        f"{balanced['mahalanobis']:.1f} sigmas from the shared one: {_balanced_advice(float(balanced['mahalanobis']))}"
+    )
     robust = _estimate(estimates, ROBUST, ALL)
     sentences.append(
         f"The robust model with all {int(robust['n_observations'])} observations in lies {robust['mahalanobis']:.1f} "
@@ -83,6 +89,12 @@ def _estimate(estimates: pd.DataFrame, noise_model: str, name: str) -> pd.Series
             "noise_models.parquet", f"no row of {noise_model}, {name}", "an estimate of it", "run its stage again"
         )
     return rows.iloc[0]
+
+
+def _balanced_advice(distance: float) -> str:
+    if distance < chi.ppf(_CLOSE, N_PARAMETERS):
+        return "either will do."
+    return "take the balanced one, the shared model rewards distance where errors differ from line to line."
 
 
 def _robust_advice(distance: float) -> str:

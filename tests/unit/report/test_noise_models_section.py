@@ -43,6 +43,13 @@ def test_advice_follows_the_factors(published, shared, advice):
     assert advice in told(with_factors(published, shared))
 
 
+@pytest.mark.parametrize(("distance", "advice"), [(1.2, "either will do."), (3.5, "take the balanced one")])
+def test_advice_on_the_balanced_model_follows_its_distance(distance, advice):
+    estimates = made_up.noise_models()
+    estimates.loc[estimates["noise_model"] == "balanced", "mahalanobis"] = distance
+    assert f"lies {distance:.1f} sigmas from the shared one: {advice}" in told(estimates=estimates)
+
+
 def test_errors_against_the_truth_are_told_where_there_is_one(results):
     estimates = made_up.noise_models().assign(position_error_m=0.025, rotation_error_rad=0.01, error_in_sigmas=1.5)
     assert "25 mm, 1.5 sigmas by the robust model with every fault left in" in told(estimates=estimates)
