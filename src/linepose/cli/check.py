@@ -1,6 +1,8 @@
 """`linepose check NAME`: everything that can be known before a run, all findings at once."""
 
 import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import typer
 
@@ -20,10 +22,12 @@ def check(name: Name, project: ProjectFolder = HERE) -> None:
     from linepose.cli.findings import findings_table, plain_findings, plain_sigmas, sigmas_table, summary
     from linepose.project_folder import find_project
 
-    logging.getLogger("linepose").setLevel(logging.ERROR)  # readers' warnings are findings here
     root = find_project(project)
     console = Console()
-    with Console(stderr=True).status("checking (the first time, a minute to compile)", spinner="dots"):
+    with (
+        _without_warnings(),
+        Console(stderr=True).status("checking (the first time, a minute to compile)", spinner="dots"),
+    ):
         report = check_platform(name, root)
     if console.is_terminal:
         console.print(findings_table(report))
@@ -35,3 +39,15 @@ def check(name: Name, project: ProjectFolder = HERE) -> None:
             typer.echo(line)
     if report.level == Level.ERROR:
         raise typer.Exit(1)
+
+
+@contextmanager
+def _without_warnings() -> Iterator[None]:
+    """What the readers warn of are findings here, and told as such."""
+    logger = logging.getLogger("linepose")
+    level = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)

@@ -142,9 +142,9 @@ class Platform(Section):
     noise_model: NoiseModelName = Field(
         "published",
         description="The likelihood's model of the noise. published: every line of a view errs independently, as "
-        "reported (the paper). shared: the navigation error is common to a view, its level inferred (recommended). "
-        "balanced: shared, without the determinants' pull on the pose. robust: shared, with heavy tails for bad views "
-        "and points.",
+        "reported (the paper). shared: the navigation error is common to a view, its level inferred. "
+        "balanced: shared, without the determinants' pull on the pose (recommended). robust: shared, with heavy tails "
+        "for bad views and points.",
     )
     prior: Literal["none", "hand_measured"] = Field(
         "none",

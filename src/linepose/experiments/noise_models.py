@@ -1,7 +1,7 @@
 """The pose under each noise model, from several sets of observations: what the choice of the model changes.
 
-Beside each pose stand the levels that the model infers, and how far the estimate lies from the recommended one: that of
-the shared-error model from the accepted observations. Beside both, what the data say of each parameter of that model.
+Beside each pose stand the levels that the model infers, and how far the estimate lies from that of the shared-error
+model from the accepted observations. Beside both, what the data say of each parameter of that model.
 """
 
 from collections.abc import Iterator, Mapping

@@ -1,6 +1,7 @@
 """Each command as a user gives it: what it prints, what it writes, how it ends; faults are one line."""
 
 import io
+import logging
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -11,6 +12,7 @@ from typer.testing import CliRunner
 
 from linepose.cli import run as run_command
 from linepose.cli.app import app
+from linepose.cli.check import _without_warnings
 from linepose.config.platform import load_platform
 
 from .. import made_up
@@ -282,3 +284,11 @@ def test_program_starts_quickly_and_without_the_science():
     code = "import sys; from linepose.cli import app; print(*sys.modules)"
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numba", "pandas", "matplotlib", "scipy"} & set(told.stdout.split())
+
+
+def test_check_leaves_warnings_on_for_what_comes_after():
+    logger = logging.getLogger("linepose")
+    before = logger.level
+    with _without_warnings():
+        assert not logger.isEnabledFor(logging.WARNING)
+    assert logger.level == before

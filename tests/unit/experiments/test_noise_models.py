@@ -34,7 +34,7 @@ def fits_schema(table, schema):
     return set(table.columns) == set(schema.names)
 
 
-def test_each_model_and_set_has_a_row_and_distances_are_from_the_recommended_one(fits):
+def test_each_model_and_set_has_a_row_and_distances_are_from_the_shared_one(fits):
     table = noise_model_table(fits)
     assert fits_schema(table, NOISE_MODELS)
     assert table[["noise_model", "set"]].to_numpy().tolist() == [
