@@ -1,5 +1,6 @@
 """The coverage study: coverage against what is stated, ranks of the truth, and errors."""
 
+import math
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,7 @@ from linepose.figures.checks import usable_rows
 from linepose.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, WIDE_IN, blank_figure, styled
 
 _COLOURS: Final = {"published": RED, "shared": ORANGE, "balanced": BLUE}
+_PANELS_A_ROW: Final = 4
 _OTHERS: Final = (GREEN, PURPLE, BLACK)
 _PARAMETERS: Final = ("$r_x$", "$r_y$", "$r_z$", r"$\theta e_x$", r"$\theta e_y$", r"$\theta e_z$")
 
@@ -26,11 +28,16 @@ def coverage(curve: pd.DataFrame) -> Figure:
     """
     rows = usable_rows(curve, ["platform", "regime", "noise_model", "nominal", "coverage"], "coverage.parquet")
     platforms, regimes = _names(rows, "platform"), _names(rows, "regime")
-    figure = blank_figure(WIDE_IN, 0.5 + 1.2 * len(platforms))
-    panels = figure.subplots(len(platforms), len(regimes), sharex=True, sharey=True, squeeze=False)
+    n_rows = math.ceil(len(regimes) / _PANELS_A_ROW)  # of a platform
+    n_columns = min(len(regimes), _PANELS_A_ROW)
+    figure = blank_figure(WIDE_IN, 0.6 + 1.6 * n_rows * len(platforms))
+    panels = figure.subplots(n_rows * len(platforms), n_columns, sharex=True, sharey=True, squeeze=False)
+    for panel in panels.flat:
+        panel.set_axis_off()
     for i, platform in enumerate(platforms):
         for j, regime in enumerate(regimes):
-            panel = panels[i, j]
+            panel = panels[n_rows * i + j // n_columns, j % n_columns]
+            panel.set_axis_on()
             panel.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
             part = rows[(rows["platform"] == platform) & (rows["regime"] == regime)]
             for model, line in part.groupby("noise_model", sort=False):
@@ -40,10 +47,10 @@ def coverage(curve: pd.DataFrame) -> Figure:
                 )
                 panel.plot(line["nominal"], line["coverage"], color=colour, linewidth=1.0)
             panel.set(xlim=(0, 1), ylim=(0, 1), xticks=[0, 0.5, 1], yticks=[0, 0.5, 1])
-            if i == 0:
-                panel.set_title(regime.replace("-", "\n"))
-        panels[i, 0].set_ylabel(f"{platform}\nholds the truth")
-    panels[-1, len(regimes) // 2].set_xlabel("Stated probability of the region")
+            panel.set_title(regime.replace("-", "\n", 1).replace("-", " "))
+            if j % n_columns == 0:
+                panel.set_ylabel(f"{platform}\nholds the truth")
+    figure.supxlabel("Stated probability of the region", fontsize=8)
     _legend(figure, _names(rows, "noise_model"))
     return figure
 
@@ -70,7 +77,8 @@ def ranks(surveys: pd.DataFrame, noise_model: str) -> Figure:
             if i == 0:
                 panel.set_title(_PARAMETERS[j])
         platform, regime = cell
-        panels[i, 0].set_ylabel(f"{str(platform).removesuffix('-sim')}\n{regime}")
+        words = f"{str(platform).removesuffix('-sim')} {str(regime).replace('-', ' ')}".replace(" ", "\n")
+        panels[i, 0].set_ylabel(words, rotation=0, ha="right", va="center")
     figure.supxlabel(f"Rank of the true parameter among {N_RANKED} samples", fontsize=8)
     return figure
 

@@ -54,3 +54,12 @@ def test_table_has_a_row_a_cell_with_intervals(surveys):
     assert lines[2].startswith("| p-sim | white | published |")
     assert lines[2].endswith("| - | - | 40 of 40 |")
     assert "(" in lines[3]
+
+
+def test_many_regimes_go_into_rows_of_four(surveys):
+    many = pd.concat([surveys.assign(regime=f"{regime}-{n}") for n in range(3) for regime in ("white", "shared")])
+    figure = figures.coverage(coverage_curve(many, stated_probabilities()))
+    shown = [axes for axes in figure.axes if axes.axison]
+    assert len({axes.get_position().y0 for axes in shown}) == 2
+    assert [axes.get_title() for axes in shown[:2]] == ["white\n0", "shared\n0"]
+    assert len(shown) == 6
