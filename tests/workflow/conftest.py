@@ -6,6 +6,7 @@ import pytest
 from tiny_project import STUDY, TINY, Project
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """All workflow tests in one process: they share the finished project, and each uses all cores itself."""
     for item in items:
