@@ -22,7 +22,7 @@ reproduce: $(STAMP) ## Run every experiment; results go to results/
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
 test: $(STAMP) ## Run the tests
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest --numprocesses $(CORES) --dist loadgroup
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest --numprocesses $(CORES)
 
 check: $(STAMP) ## Style, types and the workflow's own lint
 	$(BIN)/ruff format --check .

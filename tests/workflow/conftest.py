@@ -6,14 +6,6 @@ import pytest
 from tiny_project import STUDY, TINY, Project
 
 
-@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """All workflow tests in one process: they share the finished project, and each uses all cores itself."""
-    for item in items:
-        if item.get_closest_marker("workflow"):
-            item.add_marker(pytest.mark.xdist_group("workflow"))
-
-
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory) -> Project:
     """The tiny platform's project after a run on two cores; tests must not change its results."""
