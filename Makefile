@@ -43,8 +43,8 @@ reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the 
 	$(BIN)/python -m linepose.config.reference
 
 images: $(STAMP) ## Make the pictures of README and docs, from results/
-	$(BIN)/python -m linepose.report.pictures
-	$(BIN)/python -m linepose.figures.conventions
+	$(BIN)/python -m linepose.output.report.pictures
+	$(BIN)/python -m linepose.output.figures.conventions
 
 lock: ## Take the newest versions that fit pyproject.toml into requirements.lock
 	rm -rf .venv-lock

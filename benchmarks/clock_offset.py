@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from linepose.config.platform import Platform, load_platform
+from linepose.estimation.optimise import laplace_covariance, optimise
 from linepose.experiments.jackknife import jackknife_sigma
-from linepose.optimise import laplace_covariance, optimise
-from linepose.simulate.settings import SimulationSettings
-from linepose.simulate.survey import without_faults
+from linepose.simulation.settings import SimulationSettings
+from linepose.simulation.survey import without_faults
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "unit"))

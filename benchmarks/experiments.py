@@ -12,14 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-from linepose.batches import batch_ranges, run_batches
 from linepose.config.platform import load_platform, read_yaml
-from linepose.experiment_schemas import BASIN, SPLITS
 from linepose.experiments.basin import BasinGrid, Sweep
 from linepose.experiments.repeatability import random_splits
+from linepose.experiments.schemas import BASIN, SPLITS
 from linepose.likelihood.published import PublishedLikelihood
+from linepose.pipeline.batches import batch_ranges, run_batches
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "unit" / "likelihood"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import surveys
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -12,14 +12,14 @@ import numpy as np
 import pandas as pd
 
 from linepose.config.platform import load_platform
-from linepose.extraction.accuracy import compare_methods
-from linepose.extraction.detect import detect
-from linepose.extraction.refine import METHODS
-from linepose.extraction.scans import Scan
-from linepose.simulate.projection import exact_projections
-from linepose.simulate.record import true_lines
-from linepose.simulate.render import render
-from linepose.simulate.sensor import expose
+from linepose.inputs.scans.scan_files import Scan
+from linepose.inputs.targets.accuracy import compare_methods
+from linepose.inputs.targets.detect import detect
+from linepose.inputs.targets.refine import METHODS
+from linepose.simulation.projection import exact_projections
+from linepose.simulation.record import true_lines
+from linepose.simulation.render import render
+from linepose.simulation.sensor import expose
 
 PASSES = (12, 11, 1)  # of the simulated Shrimp: near, middle, far
 SPEEDS_M_S = (0.05, 0.2, 0.8)

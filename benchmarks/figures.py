@@ -13,14 +13,14 @@ import yaml
 
 from linepose.config.project import load_project
 from linepose.errors import LineposeError
-from linepose.figures.render import render_figures
-from linepose.figures.results import PlatformResults
-from linepose.report.assemble import platform_on_page
-from linepose.report.made_with import settings_text, versions
-from linepose.report.page import render_page
-from linepose.report.published import published_sections
-from linepose.result_schemas import REGRESSION
-from linepose.storage import read_table
+from linepose.output.figures.render import render_figures
+from linepose.output.figures.results import PlatformResults
+from linepose.output.report.assemble import platform_on_page
+from linepose.output.report.made_with import settings_text, versions
+from linepose.output.report.page import render_page
+from linepose.paper.report_sections import published_sections
+from linepose.pipeline.result_schemas import REGRESSION
+from linepose.tables import read_table
 
 ROOT = Path(__file__).resolve().parents[1]
 FIGURES_TARGET_S, REPORT_TARGET_S = 40.0, 5.0

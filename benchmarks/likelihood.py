@@ -13,12 +13,12 @@ import numba
 import numpy as np
 from numba import njit
 
-from linepose.camera import Camera
+from linepose.geometry.camera import Camera
 from linepose.likelihood.operations import floating_point_operations
 from linepose.likelihood.published import PublishedLikelihood
-from linepose.observations import Survey
+from linepose.survey.observations import Survey
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "unit" / "likelihood"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import reference
 import surveys
 

@@ -13,12 +13,12 @@ import numba
 import yaml
 
 from linepose.config.platform import load_platform
+from linepose.estimation.optimise import optimise
+from linepose.estimation.outliers import reject_outliers
+from linepose.estimation.sampling import sample
 from linepose.likelihood.published import PublishedLikelihood
-from linepose.optimise import optimise
-from linepose.outliers import reject_outliers
-from linepose.sampling import sample
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "unit" / "likelihood"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import reference
 import surveys
 

@@ -19,14 +19,14 @@ import numpy as np
 import pandas as pd
 
 from linepose.config.platform import load_platform
-from linepose.extraction.labels import read_labels
-from linepose.extraction.refine import METHODS
-from linepose.extraction.scan_survey import detected_points, refined_points, select_scans
-from linepose.navigation_log import associate_poses, interpolated_pose, read_navigation_log
-from linepose.observations import EULER_COLUMNS, POSITION_COLUMNS
-from linepose.simulate import envi
-from linepose.simulate.record import write_survey
-from linepose.simulate.render import render
+from linepose.inputs.labels.labels import read_labels
+from linepose.inputs.observed_points import detected_points, refined_points, select_scans
+from linepose.inputs.targets.refine import METHODS
+from linepose.simulation import envi
+from linepose.simulation.record import write_survey
+from linepose.simulation.render import render
+from linepose.survey.navigation_log import associate_poses, interpolated_pose, read_navigation_log
+from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 
 PLATFORMS = ("ladybird-sim", "shrimp-sim")
 RENDERING_S, EXTRACTION_S, ASSOCIATION_S, READING_MB = 180, 60, 5, 500

@@ -14,24 +14,24 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "unit" / "likelihood"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import field_data
 import small_survey
 
-from linepose.camera import Camera
-from linepose.diagnostics import diagnose_samples
+from linepose.arrays import Floats
+from linepose.estimation.diagnostics import diagnose_samples
+from linepose.estimation.noise_models import likelihood_of
+from linepose.estimation.optimise import optimise
+from linepose.estimation.sampling import IndependenceSettings, sample
+from linepose.geometry.camera import Camera
 from linepose.likelihood.balanced import BalancedLikelihood
 from linepose.likelihood.names import BALANCED, ROBUST, SHARED
 from linepose.likelihood.robust import RobustSharedLikelihood
 from linepose.likelihood.shared import SharedLikelihood
 from linepose.likelihood.shared_kernel import empty_lines, levels_at, linearise, optics_at
 from linepose.likelihood.shared_marginal import initial_points
-from linepose.noise_models import likelihood_of
-from linepose.observations import Survey
-from linepose.optimise import optimise
-from linepose.rotations import Floats
-from linepose.sampling import IndependenceSettings, sample
+from linepose.survey.observations import Survey
 
 HAND_MEASURED = np.array([0.200, 0.000, -0.800, -0.762, 0.762, -1.433])
 SCALE = np.array([*[0.05] * 3, *[0.01] * 3, *[0.5] * 3, 0.6, 3e-5])

@@ -13,13 +13,13 @@ from pathlib import Path
 
 import numpy as np
 
-from linepose.camera import Camera
 from linepose.config.platform import load_platform
-from linepose.distance import pose_difference
+from linepose.estimation.optimise import optimise
+from linepose.geometry.camera import Camera
+from linepose.geometry.distance import pose_difference
 from linepose.likelihood.shared import SharedLikelihood
-from linepose.optimise import optimise
-from linepose.simulate.settings import GroundSettings, PassSettings, SimulationSettings, WaveSettings
-from linepose.simulate.survey import simulate_survey, without_faults
+from linepose.simulation.settings import GroundSettings, PassSettings, SimulationSettings, WaveSettings
+from linepose.simulation.survey import simulate_survey, without_faults
 
 RANGE_M = 2.9
 ROLL_RAD = float(np.deg2rad(4.5))

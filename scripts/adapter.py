@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from linepose.errors import LineposeError
-from linepose.orphan import end_with
+from linepose.pipeline.parent_process import end_with
 
 _HUSHED = ("numba", "matplotlib", "fontTools", "PIL")
 

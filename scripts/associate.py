@@ -7,10 +7,10 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.source import LabelledViewsSection
-    from linepose.navigation import median_sigma_table
-    from linepose.recorded import map_frame_table, read_reported, with_navigation
-    from linepose.result_schemas import MAP_FRAME, NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS
-    from linepose.storage import read_table, write_table
+    from linepose.pipeline.load import map_frame_table, read_reported, with_navigation
+    from linepose.pipeline.result_schemas import MAP_FRAME, NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS
+    from linepose.survey.navigation import median_sigma_table
+    from linepose.tables import read_table, write_table
 
     platform, folder = Platform.model_validate(snakemake.params.platform), Path(snakemake.params.folder)
     schema = POINTS if isinstance(platform.source, LabelledViewsSection) else SCAN_POINTS

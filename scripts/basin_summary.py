@@ -5,9 +5,9 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.experiments import BasinSection
-    from linepose.experiment_schemas import BASIN, BASIN_SUMMARY
     from linepose.experiments.basin import summarise
-    from linepose.storage import read_table, write_table
+    from linepose.experiments.schemas import BASIN, BASIN_SUMMARY
+    from linepose.tables import read_table, write_table
 
     region = BasinSection.model_validate(snakemake.params.basin).region()
     sweep = read_table(snakemake.input[0], BASIN)

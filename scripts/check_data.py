@@ -6,8 +6,8 @@ import pandas as pd
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.datasets import check_dataset
-    from linepose.storage import write_csv
+    from linepose.survey.datasets import check_dataset
+    from linepose.tables import write_csv
 
     folder = Path(snakemake.params.folder)
     sums = check_dataset(folder, snakemake.params.sha256)

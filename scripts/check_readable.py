@@ -6,7 +6,7 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.recorded import check_readable
+    from linepose.pipeline.load import check_readable
 
     folder = Path(snakemake.params.folder)
     found = check_readable(Platform.model_validate(snakemake.params.platform), folder)

@@ -3,9 +3,9 @@
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.result_schemas import REGRESSION
-    from linepose.storage import read_table
-    from linepose.tables.regression import check_passed
+    from linepose.paper.regression import check_passed
+    from linepose.pipeline.result_schemas import REGRESSION
+    from linepose.tables import read_table
 
     table = read_table(snakemake.input[0], REGRESSION)
     check_passed(table)

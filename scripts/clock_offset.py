@@ -8,15 +8,15 @@ with stage(snakemake) as log:
     from linepose.config.experiments import ClockOffsetSection
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection, sampling_settings
-    from linepose.experiment_schemas import CLOCK_OFFSET
+    from linepose.estimation.noise_models import likelihoods_alike
+    from linepose.estimation.sampling import stage_seed
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.clock_offset import Without, estimate_clock_offset
+    from linepose.experiments.schemas import CLOCK_OFFSET
     from linepose.likelihood.clock_offset import with_clock_offset
-    from linepose.noise_models import likelihoods_alike
-    from linepose.recorded import read_log
-    from linepose.result_schemas import SAMPLES, with_parameters
-    from linepose.sampling import stage_seed
-    from linepose.storage import write_table
+    from linepose.pipeline.load import read_log
+    from linepose.pipeline.result_schemas import SAMPLES, with_parameters
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     maximum_s = ClockOffsetSection.model_validate(snakemake.params.clock_offset).maximum_s

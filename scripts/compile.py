@@ -3,8 +3,8 @@
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.storage import whole_file
-    from linepose.warm_up import warm_up
+    from linepose.estimation.warm_up import warm_up
+    from linepose.tables import whole_file
 
     noise_model = snakemake.wildcards.noise_model
     warm_up(noise_model)

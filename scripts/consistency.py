@@ -5,16 +5,16 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.batches import inputs_digest, remove_finished, run_batches
     from linepose.config.experiments import NoiseModelsSection, RepeatabilitySection
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection
-    from linepose.experiment_schemas import CONSISTENCY, CONSISTENCY_SUMMARY, NOISE_MODELS
     from linepose.experiments.accepted import named_pair, read_accepted, read_others
     from linepose.experiments.consistency import Comparisons, groups_of, summarise_consistency
     from linepose.experiments.noise_models import INLIERS
-    from linepose.progress import shown
-    from linepose.storage import read_table, write_table
+    from linepose.experiments.schemas import CONSISTENCY, CONSISTENCY_SUMMARY, NOISE_MODELS
+    from linepose.pipeline.batches import inputs_digest, remove_finished, run_batches
+    from linepose.pipeline.progress import shown
+    from linepose.tables import read_table, write_table
 
     params, files = snakemake.params, snakemake.input
     platform, own = Platform.model_validate(params.platform), snakemake.wildcards.platform

@@ -5,13 +5,13 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.batches import batch_ranges, inputs_digest, remove_finished, run_batches
     from linepose.config.coverage import CoverageSection, RegimeSection
     from linepose.config.platform import Platform
-    from linepose.coverage_schemas import COVERAGE_SURVEYS
     from linepose.experiments.coverage import Cell
-    from linepose.progress import shown
-    from linepose.storage import write_table
+    from linepose.experiments.coverage_schemas import COVERAGE_SURVEYS
+    from linepose.pipeline.batches import batch_ranges, inputs_digest, remove_finished, run_batches
+    from linepose.pipeline.progress import shown
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     study = CoverageSection.model_validate(snakemake.params.study)

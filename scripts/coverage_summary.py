@@ -6,12 +6,12 @@ import pandas as pd
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.coverage_schemas import COVERAGE, COVERAGE_SUMMARY, COVERAGE_SURVEYS
+    from linepose.experiments.coverage_schemas import COVERAGE, COVERAGE_SUMMARY, COVERAGE_SURVEYS
     from linepose.experiments.coverage_summary import coverage_curve, coverage_summary, stated_probabilities
-    from linepose.figures import coverage as figures
-    from linepose.figures.style import save
-    from linepose.storage import read_table, whole_file, write_csv, write_table
-    from linepose.tables.coverage import coverage_table
+    from linepose.experiments.coverage_table import coverage_table
+    from linepose.output.figures import coverage as figures
+    from linepose.output.figures.style import save
+    from linepose.tables import read_table, whole_file, write_csv, write_table
 
     cells = [read_table(path, COVERAGE_SURVEYS) for path in snakemake.input.cells]
     surveys = pd.concat([cell.astype(cells[0].dtypes) for cell in cells], ignore_index=True)

@@ -8,11 +8,11 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import sampling_settings
-    from linepose.diagnostics import diagnose_samples
-    from linepose.result_schemas import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
-    from linepose.sampling import section_of
-    from linepose.stages import diagnostics_table, estimated_parameters, pose_table, samples_from_table
-    from linepose.storage import read_table, write_table
+    from linepose.estimation.diagnostics import diagnose_samples
+    from linepose.estimation.sampling import section_of
+    from linepose.pipeline.result_schemas import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
+    from linepose.pipeline.stages import diagnostics_table, estimated_parameters, pose_table, samples_from_table
+    from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     optima = read_table(snakemake.input.optima, OPTIMA)

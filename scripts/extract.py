@@ -7,9 +7,9 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.source import LabelledViewsSection
-    from linepose.recorded import read_points
-    from linepose.result_schemas import POINTS, SCAN_POINTS
-    from linepose.storage import write_table
+    from linepose.pipeline.load import read_points
+    from linepose.pipeline.result_schemas import POINTS, SCAN_POINTS
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     folder = Path(snakemake.params.folder)

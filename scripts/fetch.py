@@ -6,7 +6,7 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.study import load_dataset
-    from linepose.datasets import download_dataset
+    from linepose.survey.datasets import download_dataset
 
     dataset = load_dataset(Path(snakemake.input.sums))
     name = snakemake.params.dataset

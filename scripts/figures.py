@@ -6,10 +6,10 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.figures.render import render_figures
-    from linepose.figures.results import PlatformResults
-    from linepose.result_schemas import FIGURES
-    from linepose.storage import write_table
+    from linepose.output.figures.render import render_figures
+    from linepose.output.figures.results import PlatformResults
+    from linepose.pipeline.result_schemas import FIGURES
+    from linepose.tables import write_table
 
     results = PlatformResults(
         name=snakemake.wildcards.platform,

@@ -5,10 +5,10 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection
-    from linepose.experiment_schemas import LEAVE_ONE_OUT
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.repeatability import leave_one_out
-    from linepose.storage import write_table
+    from linepose.experiments.schemas import LEAVE_ONE_OUT
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     search = SearchSection.model_validate(snakemake.params.search).settings()

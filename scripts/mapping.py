@@ -6,11 +6,11 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.experiments import MappingSection
     from linepose.config.platform import Platform
-    from linepose.experiment_schemas import MAPPING, MAPPING_SUMMARY
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.mapping import mapping_summary, mapping_table, perturbed
-    from linepose.plane import fit_plane
-    from linepose.storage import write_table
+    from linepose.experiments.schemas import MAPPING, MAPPING_SUMMARY
+    from linepose.geometry.plane import fit_plane
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     settings = MappingSection.model_validate(snakemake.params.mapping)

@@ -7,11 +7,11 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.extraction.labels import read_labels
-    from linepose.extraction.measured import measure_extraction
-    from linepose.extraction.scan_survey import select_scans
-    from linepose.result_schemas import DETECTION, EXTRACTION_ACCURACY, SCAN_POINTS
-    from linepose.storage import write_table
+    from linepose.inputs.labels.labels import read_labels
+    from linepose.inputs.observed_points import select_scans
+    from linepose.inputs.targets.measured import measure_extraction
+    from linepose.pipeline.result_schemas import DETECTION, EXTRACTION_ACCURACY, SCAN_POINTS
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     folder, source = Path(snakemake.input.folder), platform.source

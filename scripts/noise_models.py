@@ -10,7 +10,6 @@ with stage(snakemake) as log:
     from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection, sampling_settings
-    from linepose.experiment_schemas import IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
     from linepose.experiments.accepted import named_pair, read_accepted, read_others
     from linepose.experiments.noise_models import (
         ALL,
@@ -20,8 +19,9 @@ with stage(snakemake) as log:
         noise_model_table,
         weights_table,
     )
+    from linepose.experiments.schemas import IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
     from linepose.likelihood.names import BALANCED, PUBLISHED, ROBUST, SHARED
-    from linepose.storage import write_table
+    from linepose.tables import write_table
 
     params, files = snakemake.params, snakemake.input
     platform = Platform.model_validate(params.platform)

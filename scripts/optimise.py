@@ -5,12 +5,12 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection
-    from linepose.observations import survey_from_table
-    from linepose.outliers import stage_observations
-    from linepose.platform_likelihood import platform_likelihood
-    from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, laplace_sigma_columns, with_parameters
-    from linepose.stages import optimise_stages
-    from linepose.storage import read_table, write_table
+    from linepose.estimation.outliers import stage_observations
+    from linepose.pipeline.platform_likelihood import platform_likelihood
+    from linepose.pipeline.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, laplace_sigma_columns, with_parameters
+    from linepose.pipeline.stages import optimise_stages
+    from linepose.survey.observations import survey_from_table
+    from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     search = SearchSection.model_validate(snakemake.params.search).settings()

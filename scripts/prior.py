@@ -7,11 +7,11 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.experiment_schemas import PRIOR
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.prior import prior_table
-    from linepose.result_schemas import SAMPLES
-    from linepose.storage import read_table, write_table
+    from linepose.experiments.schemas import PRIOR
+    from linepose.pipeline.result_schemas import SAMPLES
+    from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     likelihood = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers).accepted

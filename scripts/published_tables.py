@@ -6,10 +6,10 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
-    from linepose.experiment_schemas import PUBLISHED_NAVIGATION, PUBLISHED_POSES, REPEATABILITY, SUBSETS
-    from linepose.result_schemas import NAVIGATION_SIGMA, POSE
-    from linepose.storage import read_table, whole_file, write_csv, write_table
-    from linepose.tables.published import markdown, published_tables
+    from linepose.experiments.schemas import PUBLISHED_NAVIGATION, PUBLISHED_POSES, REPEATABILITY, SUBSETS
+    from linepose.paper.tables import markdown, published_tables
+    from linepose.pipeline.result_schemas import NAVIGATION_SIGMA, POSE
+    from linepose.tables import read_table, whole_file, write_csv, write_table
 
     tables = published_tables(
         snakemake.params.platform,

@@ -8,8 +8,11 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
-    from linepose.experiment_schemas import BASIN_SUMMARY, REPEATABILITY, SUBSETS
-    from linepose.result_schemas import (
+    from linepose.experiments.schemas import BASIN_SUMMARY, REPEATABILITY, SUBSETS
+    from linepose.paper.experiments_regression import BASIN_ROWS_OF, table_rows
+    from linepose.paper.regression import PlatformResults, regression_table
+    from linepose.paper.simulated_regression import extraction_rows
+    from linepose.pipeline.result_schemas import (
         DETECTION,
         EXTRACTION_ACCURACY,
         NAVIGATION_SIGMA,
@@ -18,10 +21,7 @@ with stage(snakemake) as log:
         REGRESSION,
         TRUTH_ERROR,
     )
-    from linepose.storage import read_table, write_csv, write_table
-    from linepose.tables.experiments_regression import BASIN_ROWS_OF, table_rows
-    from linepose.tables.regression import PlatformResults, regression_table
-    from linepose.tables.simulated import extraction_rows
+    from linepose.tables import read_table, write_csv, write_table
 
     published_as = snakemake.params.published_as
     files = zip(published_as, snakemake.input.pose, snakemake.input.outliers, snakemake.input.sigma, strict=True)

@@ -5,11 +5,11 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import OutliersSection, SearchSection
-    from linepose.observations import survey_from_table
-    from linepose.outliers import outlier_table, reject_outliers, removal_order
-    from linepose.platform_likelihood import platform_likelihood
-    from linepose.result_schemas import OBSERVATIONS, OUTLIERS
-    from linepose.storage import read_table, write_table
+    from linepose.estimation.outliers import outlier_table, reject_outliers, removal_order
+    from linepose.pipeline.platform_likelihood import platform_likelihood
+    from linepose.pipeline.result_schemas import OBSERVATIONS, OUTLIERS
+    from linepose.survey.observations import survey_from_table
+    from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     outliers = OutliersSection.model_validate(snakemake.params.outliers)

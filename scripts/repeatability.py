@@ -6,10 +6,10 @@ with stage(snakemake) as log:
     from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection, sampling_settings
-    from linepose.experiment_schemas import REPEATABILITY
     from linepose.experiments.accepted import read_accepted
     from linepose.experiments.repeatability import compare_subsets
-    from linepose.storage import write_table
+    from linepose.experiments.schemas import REPEATABILITY
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     settings = RepeatabilitySection.model_validate(snakemake.params.repeatability)

@@ -6,13 +6,13 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.figures.results import PlatformResults
-    from linepose.report.assemble import platform_on_page
-    from linepose.report.made_with import settings_text, versions
-    from linepose.report.page import render_page
-    from linepose.report.published import published_sections
-    from linepose.result_schemas import REGRESSION
-    from linepose.storage import read_table, whole_file
+    from linepose.output.figures.results import PlatformResults
+    from linepose.output.report.assemble import platform_on_page
+    from linepose.output.report.made_with import settings_text, versions
+    from linepose.output.report.page import render_page
+    from linepose.paper.report_sections import published_sections
+    from linepose.pipeline.result_schemas import REGRESSION
+    from linepose.tables import read_table, whole_file
 
     platforms = []
     for name, values in snakemake.params.platforms.items():

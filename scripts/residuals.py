@@ -4,12 +4,12 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.observations import survey_from_table
-    from linepose.outliers import stage_observations
-    from linepose.platform_likelihood import platform_likelihood
-    from linepose.residual_tables import residual_tables
-    from linepose.result_schemas import ESTIMATED_POINTS, OBSERVATIONS, OPTIMA, OUTLIERS, RESIDUALS
-    from linepose.storage import read_table, write_table
+    from linepose.estimation.outliers import stage_observations
+    from linepose.pipeline.platform_likelihood import platform_likelihood
+    from linepose.pipeline.residual_tables import residual_tables
+    from linepose.pipeline.result_schemas import ESTIMATED_POINTS, OBSERVATIONS, OPTIMA, OUTLIERS, RESIDUALS
+    from linepose.survey.observations import survey_from_table
+    from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))

@@ -5,13 +5,13 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection
-    from linepose.experiment_schemas import SENSITIVITY
     from linepose.experiments.accepted import read_accepted
+    from linepose.experiments.schemas import SENSITIVITY
     from linepose.experiments.sensitivity import camera_changes, sensitivity
     from linepose.likelihood.names import PUBLISHED
     from linepose.likelihood.pixels import PixelLikelihood
-    from linepose.platform_likelihood import platform_likelihood
-    from linepose.storage import write_table
+    from linepose.pipeline.platform_likelihood import platform_likelihood
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     search = SearchSection.model_validate(snakemake.params.search).settings()

@@ -6,8 +6,8 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import CameraSection
-    from linepose.simulate.record import write_survey
-    from linepose.simulate.settings import settings_from_dict
+    from linepose.simulation.record import write_survey
+    from linepose.simulation.settings import settings_from_dict
 
     camera = CameraSection.model_validate(snakemake.params.camera).intrinsics()
     settings = settings_from_dict(snakemake.params.simulation)

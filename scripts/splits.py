@@ -5,15 +5,15 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.batches import batch_ranges, inputs_digest, remove_finished, run_batches
     from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection
-    from linepose.experiment_schemas import SPLITS
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.repeatability import random_splits
-    from linepose.progress import shown
-    from linepose.storage import write_table
+    from linepose.experiments.schemas import SPLITS
+    from linepose.pipeline.batches import batch_ranges, inputs_digest, remove_finished, run_batches
+    from linepose.pipeline.progress import shown
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     settings = RepeatabilitySection.model_validate(snakemake.params.repeatability)

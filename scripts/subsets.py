@@ -6,10 +6,10 @@ with stage(snakemake) as log:
     from linepose.config.experiments import SubsetSection
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection, sampling_settings
-    from linepose.experiment_schemas import SUBSETS
     from linepose.experiments.accepted import read_accepted
+    from linepose.experiments.schemas import SUBSETS
     from linepose.experiments.subsets import subset_estimates
-    from linepose.storage import write_table
+    from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     sections = {key: SubsetSection.model_validate(value) for key, value in snakemake.params.subsets.items()}

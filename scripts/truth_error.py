@@ -6,9 +6,9 @@ import pandas as pd
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.result_schemas import OPTIMA, SAMPLES, TRUTH_ERROR
-    from linepose.storage import read_table, write_table
-    from linepose.tables.truth_error import flat_samples, true_pose, truth_error_table
+    from linepose.experiments.truth_error import flat_samples, true_pose, truth_error_table
+    from linepose.pipeline.result_schemas import OPTIMA, SAMPLES, TRUTH_ERROR
+    from linepose.tables import read_table, write_table
 
     optima = read_table(snakemake.input.optima, OPTIMA)
     folder = Path(snakemake.input.samples)

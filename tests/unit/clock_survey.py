@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from linepose.camera import Camera
+from linepose.estimation.noise_models import likelihood_of
+from linepose.geometry.camera import Camera
 from linepose.likelihood.clock_offset import ClockOffsetLikelihood, with_clock_offset
-from linepose.navigation import NavigationCovariances, associate_covariances
-from linepose.navigation_log import NavigationLog, associate_poses, interpolated_pose
-from linepose.noise_models import likelihood_of
-from linepose.observations import EULER_COLUMNS, POSITION_COLUMNS, Survey, survey_from_table
-from linepose.simulate.navigation_error import white_per_line
-from linepose.simulate.projection import exact_projections
-from linepose.simulate.record import navigation_log
-from linepose.simulate.settings import SimulationSettings
-from linepose.simulate.survey import reported_covariance, without_faults
-from linepose.simulate.trajectory import time_us
+from linepose.simulation.navigation_error import white_per_line
+from linepose.simulation.projection import exact_projections
+from linepose.simulation.record import navigation_log
+from linepose.simulation.settings import SimulationSettings
+from linepose.simulation.survey import reported_covariance, without_faults
+from linepose.simulation.trajectory import time_us
+from linepose.survey.navigation import NavigationCovariances, associate_covariances
+from linepose.survey.navigation_log import NavigationLog, associate_poses, interpolated_pose
+from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS, Survey, survey_from_table
 
 MAXIMUM_S = 0.1
 NO_START = np.zeros(6)  # only the balanced model needs one

@@ -9,11 +9,11 @@ import pytest
 import yaml
 from scipy.spatial.transform import Rotation
 
-from linepose.camera import Camera
 from linepose.config.platform import Platform, load_platform
 from linepose.config.study import DatasetSection, load_dataset
+from linepose.geometry.camera import Camera
 from linepose.likelihood.base import Likelihood, Residuals
-from linepose.observations import Survey
+from linepose.survey.observations import Survey
 
 ROOT = Path(__file__).parents[2]
 CONFIG = ROOT / "config"

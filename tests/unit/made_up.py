@@ -5,18 +5,19 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from linepose import experiment_schemas, result_schemas
 from linepose.config.platform import Platform
+from linepose.experiments import schemas
 from linepose.experiments.basin import START_COLUMNS, Region, summarise
 from linepose.experiments.clock_offset import CORRELATION_COLUMNS
 from linepose.experiments.consistency import summarise_consistency
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.experiments.noise_models import EXTRA_PARAMETERS
-from linepose.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS
-from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.residual_tables import POINT_COVARIANCE_COLUMNS
-from linepose.result_schemas import LAPLACE_SIGMA_COLUMNS
-from linepose.storage import write_table
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.pipeline import result_schemas
+from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS
+from linepose.pipeline.result_schemas import LAPLACE_SIGMA_COLUMNS
+from linepose.survey.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS
+from linepose.tables import write_table
 
 OPTIMUM = np.array([0.19, -0.14, -0.79, -0.82, 0.74, -1.43])
 SIGMA = np.array([0.03, 0.05, 0.06, 0.016, 0.018, 0.009])
@@ -336,8 +337,8 @@ def clock_offset() -> pd.DataFrame:
 
 
 TABLES = {
-    "prior": (prior, experiment_schemas.PRIOR),
-    "clock_offset": (clock_offset, experiment_schemas.CLOCK_OFFSET),
+    "prior": (prior, schemas.PRIOR),
+    "clock_offset": (clock_offset, schemas.CLOCK_OFFSET),
     "observations": (observations, result_schemas.OBSERVATIONS),
     "outliers": (outliers, result_schemas.OUTLIERS),
     "optima": (optima, result_schemas.OPTIMA),
@@ -346,18 +347,18 @@ TABLES = {
     "diagnostics": (diagnostics, result_schemas.DIAGNOSTICS),
     "residuals": (residuals, result_schemas.RESIDUALS),
     "estimated_points": (estimated_points, result_schemas.ESTIMATED_POINTS),
-    "mapping": (mapping, experiment_schemas.MAPPING),
-    "mapping_summary": (mapping_summary, experiment_schemas.MAPPING_SUMMARY),
-    "basin": (basin, experiment_schemas.BASIN),
-    "basin_summary": (basin_summary, experiment_schemas.BASIN_SUMMARY),
-    "splits": (splits, experiment_schemas.SPLITS),
-    "leave_one_out": (leave_one_out, experiment_schemas.LEAVE_ONE_OUT),
-    "uncertainty": (uncertainty, experiment_schemas.UNCERTAINTY),
-    "noise_models": (noise_models, experiment_schemas.NOISE_MODELS),
-    "identifiability": (identifiability, experiment_schemas.IDENTIFIABILITY),
-    "weights": (weights, experiment_schemas.WEIGHTS),
-    "consistency": (consistency, experiment_schemas.CONSISTENCY),
-    "consistency_summary": (consistency_summary, experiment_schemas.CONSISTENCY_SUMMARY),
+    "mapping": (mapping, schemas.MAPPING),
+    "mapping_summary": (mapping_summary, schemas.MAPPING_SUMMARY),
+    "basin": (basin, schemas.BASIN),
+    "basin_summary": (basin_summary, schemas.BASIN_SUMMARY),
+    "splits": (splits, schemas.SPLITS),
+    "leave_one_out": (leave_one_out, schemas.LEAVE_ONE_OUT),
+    "uncertainty": (uncertainty, schemas.UNCERTAINTY),
+    "noise_models": (noise_models, schemas.NOISE_MODELS),
+    "identifiability": (identifiability, schemas.IDENTIFIABILITY),
+    "weights": (weights, schemas.WEIGHTS),
+    "consistency": (consistency, schemas.CONSISTENCY),
+    "consistency_summary": (consistency_summary, schemas.CONSISTENCY_SUMMARY),
 }
 
 

@@ -7,12 +7,12 @@ import numpy as np
 from spectral.io.envi import write_envi_header
 
 from linepose.config.platform import Platform
-from linepose.observations import Survey
-from linepose.simulate.envi import write_line_times
-from linepose.simulate.record import labels, navigation_log, write_covariances
-from linepose.simulate.render import line_times_s
-from linepose.simulate.survey import reported_covariance, simulate_survey, without_faults
-from linepose.simulate.trajectory import time_us
+from linepose.simulation.envi import write_line_times
+from linepose.simulation.record import labels, navigation_log, write_covariances
+from linepose.simulation.render import line_times_s
+from linepose.simulation.survey import reported_covariance, simulate_survey, without_faults
+from linepose.simulation.trajectory import time_us
+from linepose.survey.observations import Survey
 
 VIEWS = "labelled_points"
 

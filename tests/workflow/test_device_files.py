@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from tiny_project import ROOT, STUDY, TINY, Project
 
-from linepose.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
+from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
 
 sys.path.insert(0, str(ROOT / "tests"))
 from unit.formats import novatel_writer, writers

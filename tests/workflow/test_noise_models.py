@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 from tiny_project import STUDY, TINY
 
+from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.shared import LEVEL_NAMES, SHARED_PARAMETERS
-from linepose.pose import POSE_COLUMNS
 
 pytestmark = pytest.mark.workflow
 

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tiny_project import ROOT
 
 import linepose
-from linepose.storage import read_table
+from linepose.tables import read_table
 
 pytestmark = pytest.mark.workflow
 

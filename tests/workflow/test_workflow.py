@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 from tiny_project import STUDY, TINY, Project, lines_with
 
-from linepose.pose import POSE_COLUMNS
+from linepose.geometry.pose import POSE_COLUMNS
 
 pytestmark = pytest.mark.workflow
 

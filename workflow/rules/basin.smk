@@ -20,9 +20,9 @@ rule basin:
         work="results/{platform}/work/basin",
         code=[
             source_digest("linepose.experiments.basin"),
-            source_digest("linepose.batches"),
+            source_digest("linepose.pipeline.batches"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/basin.py"

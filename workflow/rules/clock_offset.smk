@@ -23,9 +23,9 @@ rule clock_offset:
         seed=STUDY.seed,
         code=[
             source_digest("linepose.experiments.clock_offset"),
-            source_digest("linepose.recorded"),
+            source_digest("linepose.pipeline.load"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/clock_offset.py"

@@ -6,11 +6,11 @@ from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 
 from linepose.config.project import load_project
-from linepose.datasets import can_be_reached
+from linepose.survey.datasets import can_be_reached
 from linepose.errors import LineposeError
 from linepose.likelihood.names import NoiseModelName
-from linepose.provenance import files_digest, source_digest
-from linepose.storage import read_table
+from linepose.pipeline.provenance import files_digest, source_digest
+from linepose.tables import read_table
 
 
 def can_download(dataset):

@@ -6,6 +6,6 @@ rule compile:
     conda:
         "../../environment.yml"
     params:
-        code=source_digest("linepose.warm_up"),
+        code=source_digest("linepose.estimation.warm_up"),
     script:
         "../../scripts/compile.py"

@@ -25,9 +25,9 @@ rule consistency:
         work="results/{platform}/work/consistency",
         code=[
             source_digest("linepose.experiments.consistency"),
-            source_digest("linepose.batches"),
+            source_digest("linepose.pipeline.batches"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/consistency.py"

@@ -25,7 +25,7 @@ rule coverage_cell:
         work="results/coverage/work/{platform}-{regime}-{noise_model}",
         code=[
             source_digest("linepose.experiments.coverage"),
-            source_digest("linepose.batches"),
+            source_digest("linepose.pipeline.batches"),
         ],
     script:
         "../../scripts/coverage_cell.py"
@@ -47,8 +47,8 @@ rule coverage:
         "../../environment.yml"
     params:
         code=[
-            source_digest("linepose.tables.coverage"),
-            source_digest("linepose.figures.coverage"),
+            source_digest("linepose.experiments.coverage_table"),
+            source_digest("linepose.output.figures.coverage"),
         ],
     script:
         "../../scripts/coverage_summary.py"  # numba imports whatever is called coverage

@@ -12,6 +12,6 @@ rule diagnose:
     params:
         platform=settings,
         sampling=sampling,
-        code=source_digest("linepose.stages"),
+        code=source_digest("linepose.pipeline.stages"),
     script:
         "../../scripts/diagnose.py"

@@ -17,6 +17,6 @@ for key in PROJECT.datasets:
         params:
             dataset=key,
             searched=STUDY.data_folders,
-            code=source_digest("linepose.datasets"),
+            code=source_digest("linepose.survey.datasets"),
         script:
             "../../scripts/fetch.py"

@@ -29,6 +29,6 @@ rule figures:
         ),
         outliers=section("outliers"),
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=source_digest("linepose.figures.render"),
+        code=source_digest("linepose.output.figures.render"),
     script:
         "../../scripts/figures.py"

@@ -17,7 +17,7 @@ rule leave_one_out:
         code=[
             source_digest("linepose.experiments.repeatability"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/leave_one_out.py"

@@ -18,7 +18,7 @@ rule mapping:
         code=[
             source_digest("linepose.experiments.mapping"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/mapping.py"

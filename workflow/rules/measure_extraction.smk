@@ -14,6 +14,6 @@ rule measure_extraction:
         "../../environment.yml"
     params:
         platform=settings,
-        code=source_digest("linepose.extraction.measured"),
+        code=source_digest("linepose.inputs.targets.measured"),
     script:
         "../../scripts/measure_extraction.py"

@@ -29,7 +29,7 @@ rule noise_models:
         code=[
             source_digest("linepose.experiments.noise_models"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/noise_models.py"

@@ -13,8 +13,8 @@ rule optimise:
         platform=settings,
         search=section("search"),
         code=[
-            source_digest("linepose.stages"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.pipeline.stages"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/optimise.py"

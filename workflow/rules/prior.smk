@@ -16,7 +16,7 @@ rule prior:
         code=[
             source_digest("linepose.experiments.prior"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/prior.py"

@@ -1,4 +1,4 @@
-from linepose.tables.experiments_regression import BASIN_ROWS_OF
+from linepose.paper.experiments_regression import BASIN_ROWS_OF
 
 REGRESSED = {
     key: PROJECT.platforms[key].published
@@ -70,8 +70,8 @@ rule regression:
         swept=SWEPT,
         on_truth=REGRESSED_ON_TRUTH,
         code=[
-            source_digest("linepose.tables.experiments_regression"),
-            source_digest("linepose.tables.simulated"),
+            source_digest("linepose.paper.experiments_regression"),
+            source_digest("linepose.paper.simulated_regression"),
         ],
     script:
         "../../scripts/regression.py"
@@ -87,6 +87,6 @@ rule check_regression:
     conda:
         "../../environment.yml"
     params:
-        code=source_digest("linepose.tables.regression"),
+        code=source_digest("linepose.paper.regression"),
     script:
         "../../scripts/check_regression.py"

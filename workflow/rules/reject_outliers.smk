@@ -13,8 +13,8 @@ rule reject_outliers:
         outliers=section("outliers"),
         search=section("search"),
         code=[
-            source_digest("linepose.outliers"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.outliers"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/reject_outliers.py"

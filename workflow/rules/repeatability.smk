@@ -20,7 +20,7 @@ rule repeatability:
         code=[
             source_digest("linepose.experiments.repeatability"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/repeatability.py"

@@ -26,9 +26,9 @@ rule report:
         },
         study=STUDY.model_dump(mode="json"),
         code=[
-            source_digest("linepose.report.assemble"),
-            source_digest("linepose.report.published"),
+            source_digest("linepose.output.report.assemble"),
+            source_digest("linepose.paper.report_sections"),
         ],
-        templates=files_digest("report/templates"),
+        templates=files_digest("output/report/templates"),
     script:
         "../../scripts/report.py"

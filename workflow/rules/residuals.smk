@@ -14,8 +14,8 @@ rule residuals:
     params:
         platform=settings,
         code=[
-            source_digest("linepose.residual_tables"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.pipeline.residual_tables"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/residuals.py"

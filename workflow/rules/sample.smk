@@ -16,8 +16,8 @@ rule sample:
         sampling=sampling,
         seed=STUDY.seed,
         code=[
-            source_digest("linepose.stages"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.pipeline.stages"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/sample.py"

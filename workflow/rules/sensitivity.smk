@@ -19,7 +19,7 @@ rule sensitivity:
             source_digest("linepose.experiments.sensitivity"),
             source_digest("linepose.likelihood.pixels"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/sensitivity.py"

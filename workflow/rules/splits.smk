@@ -20,9 +20,9 @@ rule splits:
         work="results/{platform}/work/splits",
         code=[
             source_digest("linepose.experiments.repeatability"),
-            source_digest("linepose.batches"),
+            source_digest("linepose.pipeline.batches"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/splits.py"

@@ -20,7 +20,7 @@ rule subsets:
         code=[
             source_digest("linepose.experiments.subsets"),
             source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.noise_models"),
+            source_digest("linepose.estimation.noise_models"),
         ],
     script:
         "../../scripts/subsets.py"

@@ -10,6 +10,6 @@ rule truth_error:
     conda:
         "../../environment.yml"
     params:
-        code=source_digest("linepose.tables.truth_error"),
+        code=source_digest("linepose.experiments.truth_error"),
     script:
         "../../scripts/truth_error.py"

@@ -4,8 +4,8 @@ from typing import Final
 
 import numpy as np
 
-from linepose.camera import Camera
 from linepose.check.finding import Finding, error, ok, warning
+from linepose.geometry.camera import Camera
 
 _FIELD_OF_VIEW_DEG: Final = (3.0, 140.0)
 _PITCH_M: Final = (1e-6, 1e-4)

@@ -4,9 +4,9 @@ from typing import Final
 
 import numpy as np
 
+from linepose.arrays import Floats
 from linepose.check.finding import Finding, ok, warning
-from linepose.navigation import NavigationCovariances
-from linepose.rotations import Floats
+from linepose.survey.navigation import NavigationCovariances
 
 POSITION_M: Final = (1e-3, 5.0)  # plausible sigmas of a GNSS/INS
 ANGLE_DEG: Final = (1e-3, 5.0)

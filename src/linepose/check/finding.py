@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
+from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.rotations import Floats
 
 
 class Level(IntEnum):

@@ -4,12 +4,12 @@ from typing import Final
 
 import numpy as np
 
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.check.finding import Finding, error, numbers, ok, span, warning
 from linepose.check.replay import in_camera
+from linepose.geometry.camera import Camera
 from linepose.likelihood.published import PublishedLikelihood
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 _EXPLAINED: Final = 3.0  # sigmas of the hand measurement that an error may have
 _NEAR_M: Final = 0.05

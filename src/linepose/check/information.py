@@ -9,16 +9,16 @@ from typing import Final
 
 import numpy as np
 
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.check.replay import crossing, disturbed
 from linepose.errors import EstimationError, InputError
+from linepose.estimation.optimise import Search, laplace_covariance, optimise
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.shared import SharedLikelihood
-from linepose.observations import Survey
-from linepose.optimise import Search, laplace_covariance, optimise
-from linepose.pose import N_PARAMETERS
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 N_DRAWS: Final = 2  # simulated surveys: their sigmas agree within a tenth
 _STEPS: Final = np.repeat([2e-3, 5e-4], 3)  # m and rad: a tenth of a good calibration's sigmas

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from linepose.check.finding import Finding, error, numbers, ok, warning
-from linepose.observations import EULER_COLUMNS, POSITION_COLUMNS
+from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 
 _FEW_POINTS: Final = 4  # of one observation
 _USED_SHARE: Final = 0.25  # of the line, below which labels say little of its ends

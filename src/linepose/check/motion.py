@@ -4,9 +4,9 @@ from typing import Final
 
 import numpy as np
 
+from linepose.arrays import Floats
 from linepose.check.finding import Finding, ok, warning
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 _SHORTEST_M: Final = 0.1  # of a view's way, below which it says nothing of the heading
 _FASTEST_M_S: Final = 15.0

@@ -9,13 +9,13 @@ from typing import Final
 
 import numpy as np
 
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.check.information import published_covariance
 from linepose.check.replay import crossing
 from linepose.errors import EstimationError
 from linepose.experiments.subsets import body_angles_rad
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.geometry.camera import Camera
+from linepose.survey.observations import Survey
 
 _ADDED: Final = 4
 _TILT_RAD: Final = float(np.radians(4.0))

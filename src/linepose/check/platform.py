@@ -10,7 +10,9 @@ import pandas as pd
 
 from linepose.check import clock, covariances
 from linepose.check.camera import camera_findings
-from linepose.check.conventions import convention_findings
+from linepose.check.conventions.examine import HandSigmas, RecordingAt
+from linepose.check.conventions.findings import convention_findings
+from linepose.check.conventions.recording import Recording
 from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, error, of_fault, ok
 from linepose.check.hand_measured import hand_findings
 from linepose.check.labels import count_findings, position_findings
@@ -22,18 +24,16 @@ from linepose.config.platform import Platform, load_platform, platform_faults, r
 from linepose.config.project import Project
 from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.config.study import check_study
-from linepose.csv_files import read_numbers
-from linepose.datasets import check_dataset
-from linepose.doctor.examine import HandSigmas, RecordingAt
-from linepose.doctor.recording import Recording
 from linepose.errors import InputError, LineposeError
-from linepose.navigation import NavigationCovariances
-from linepose.navigation_log import NavigationLog
-from linepose.observations import Survey, check_determined, survey_from_table, table_from_survey
-from linepose.pose import N_PARAMETERS
-from linepose.project_folder import CONFIG, find_project, load_platform_project
-from linepose.recorded import read_log, read_reported, with_navigation
-from linepose.simulate.survey import simulate_survey
+from linepose.geometry.pose import N_PARAMETERS
+from linepose.inputs.number_files import read_numbers
+from linepose.pipeline.load import read_log, read_reported, with_navigation
+from linepose.pipeline.project_folder import CONFIG, find_project, load_platform_project
+from linepose.simulation.survey import simulate_survey
+from linepose.survey.datasets import check_dataset
+from linepose.survey.navigation import NavigationCovariances
+from linepose.survey.navigation_log import NavigationLog
+from linepose.survey.observations import Survey, check_determined, survey_from_table, table_from_survey
 
 _COVARIANCE_SIZE: Final = 12
 Read = TypeVar("Read")

@@ -5,16 +5,17 @@ from typing import Final
 
 import numpy as np
 
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.check.finding import Finding, PredictedSigma, error, ok, warning
 from linepose.check.information import published_covariance, shared_covariance
 from linepose.check.motions import best_motions, motions, spread_in_words
 from linepose.check.replay import replayed
 from linepose.errors import EstimationError, LineposeError
-from linepose.identifiability import WORDS, identifiability, in_body_axes
-from linepose.observations import Survey
-from linepose.pose import POSE_COLUMNS
-from linepose.rotations import Floats, small_rotation_by_rotation_vector
+from linepose.estimation.identifiability import WORDS, identifiability, in_body_axes
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import POSE_COLUMNS
+from linepose.geometry.rotations import small_rotation_by_rotation_vector
+from linepose.survey.observations import Survey
 
 TOO_LARGE: Final = 0.5  # of the hand measurement's sigma
 _SWEPT: Final = 0.5  # of the points, below which the replayed survey is not this one

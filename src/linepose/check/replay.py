@@ -5,9 +5,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from linepose.camera import Camera, pixel_from_normalised
-from linepose.observations import Survey
-from linepose.rotations import Floats, matrix_from_euler, matrix_from_rotation_vector
+from linepose.arrays import Floats
+from linepose.geometry.camera import Camera, pixel_from_normalised
+from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
+from linepose.survey.observations import Survey
 
 _NEVER_CROSSES: Final = 0.1  # sine of the angle between heading and scan plane below which a point is not swept over
 

@@ -9,10 +9,10 @@ from linepose.check.finding import Finding, error, numbers, of_fault, of_faults,
 from linepose.check.labels import sensor_findings
 from linepose.config.source import ScansSection
 from linepose.errors import InputError
-from linepose.extraction.scan_survey import select_scans
-from linepose.extraction.scans import scan_size
-from linepose.formats.labels import read_point_labels
-from linepose.formats.line_times import line_times_of
+from linepose.inputs.labels import read_point_labels
+from linepose.inputs.observed_points import select_scans
+from linepose.inputs.scans.line_times import line_times_of
+from linepose.inputs.scans.scan_files import scan_size
 
 
 def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[list[Finding], pd.DataFrame | None]:

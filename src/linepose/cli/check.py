@@ -20,7 +20,7 @@ def check(name: Name, project: ProjectFolder = HERE) -> None:
     from linepose.check.finding import Level
     from linepose.check.platform import check_platform
     from linepose.cli.findings import findings_table, plain_findings, plain_sigmas, sigmas_table, summary
-    from linepose.project_folder import find_project
+    from linepose.pipeline.project_folder import find_project
 
     root = find_project(project)
     console = Console()

@@ -10,7 +10,7 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 
 def _tell_formats(asked: bool) -> None:
     if asked:
-        from linepose.exports import EXPORTS
+        from linepose.output.exports import EXPORTS
 
         for key, exporter in EXPORTS.items():
             typer.echo(f"{key:12s}{exporter.title}")
@@ -37,8 +37,8 @@ def export(
 ) -> None:
     """Write a finished platform's pose, or the points it maps, for a robot or a map."""
     from linepose.errors import InputError
-    from linepose.exports import EXPORTS, export_options, export_platform
-    from linepose.project_folder import find_project, load_platform_project
+    from linepose.output.exports import EXPORTS, export_options, export_platform
+    from linepose.pipeline.project_folder import find_project, load_platform_project
 
     if not format:
         raise InputError("--format", "nothing", f"one of {', '.join(EXPORTS)}", f"linepose export {name} --format urdf")

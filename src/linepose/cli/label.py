@@ -7,10 +7,10 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 
 def label(name: Name, project: ProjectFolder = HERE) -> None:
     """Open a window to click the pattern's points over each scan; what was clicked is kept when it is closed."""
-    from linepose.api import recorded_folder
     from linepose.config.source import ScansSection
     from linepose.errors import InputError
-    from linepose.project_folder import find_project, load_platform_project
+    from linepose.pipeline.api import recorded_folder
+    from linepose.pipeline.project_folder import find_project, load_platform_project
 
     root = find_project(project)
     loaded = load_platform_project(name, root)
@@ -18,7 +18,7 @@ def label(name: Name, project: ProjectFolder = HERE) -> None:
     if not isinstance(source, ScansSection):
         remedy = "label scans: set source.kind: scans"
         raise InputError(f"{name}: source.kind", source.kind, "scans, which have images", remedy)
-    from linepose.labelling import label_platform
+    from linepose.cli.labelling import label_platform
 
     label_platform(recorded_folder(loaded, name, root), source)
     typer.echo(f"next: linepose check {name}")

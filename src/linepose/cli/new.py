@@ -111,7 +111,7 @@ def _places(project: Path) -> tuple[Path, Path]:
     """The project's folder, or where one will be made, and its folder of platform files."""
     from linepose.config.platform import read_yaml
     from linepose.errors import InputError
-    from linepose.project_folder import CONFIG, find_project
+    from linepose.pipeline.project_folder import CONFIG, find_project
 
     try:
         root = find_project(project)
@@ -129,7 +129,7 @@ def _refuse(path: Path) -> None:
 
 def _add_to_project(root: Path, name: str) -> None:
     from linepose.config.new_project import add_platform, make_project
-    from linepose.project_folder import CONFIG
+    from linepose.pipeline.project_folder import CONFIG
 
     if not (root / CONFIG).is_file():
         typer.echo(f"wrote {make_project(root, name)}")

@@ -28,7 +28,7 @@ def run(
     Makes only what is missing or older than what it is made from; after an interruption, the same command goes on.
     Results go to results/NAME, the page to read first is results/report.html.
     """
-    from linepose.project_folder import find_project, load_platform_project
+    from linepose.pipeline.project_folder import find_project, load_platform_project
 
     root = find_project(project)
     study = load_platform_project(name, root).study

@@ -1,4 +1,4 @@
-"""The keys of `source.navigation`: a path of our own table, or one of the formats in linepose.formats.navigation.
+"""The keys of `source.navigation`: a path of our own table, or one of the formats in linepose.inputs.navigation.
 
 A format that another package brings is an entry point of the group `linepose.navigation_formats` (docs/formats.md).
 """
@@ -63,7 +63,7 @@ class GeodeticSection(NavigationFormatSection):
 class NavigationFormat:
     """A navigation format: its name, the model of its keys, and what reads the logs of a data set's folder.
 
-    `read` takes the section and the folder and returns a linepose.formats.navigation.NavigationRecord.
+    `read` takes the section and the folder and returns a linepose.inputs.navigation.NavigationRecord.
     """
 
     name: str

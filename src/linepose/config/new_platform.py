@@ -11,7 +11,7 @@ import yaml
 from linepose.config.platform import CameraSection, HandMeasuredSection, NavigationSection, Platform, SigmasSection
 from linepose.config.schema import validated
 from linepose.errors import InputError
-from linepose.storage import whole_file
+from linepose.tables import whole_file
 
 Triple = tuple[float, float, float]
 _NAME: Final = re.compile(r"[A-Za-z0-9_-]+")

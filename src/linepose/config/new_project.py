@@ -8,8 +8,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from linepose.errors import InputError
-from linepose.project_folder import CONFIG
-from linepose.storage import whole_file
+from linepose.pipeline.project_folder import CONFIG
+from linepose.tables import whole_file
 
 _STUDY: Final = """# What is run. Every key, its unit and default: docs/configuration.md
 

@@ -18,18 +18,18 @@ from pydantic import (
     model_validator,
 )
 
-from linepose.camera import Camera, CameraSigmas
+from linepose.arrays import Floats
 from linepose.config.experiments import ExperimentsSection
 from linepose.config.map_frame import MapFrameSection
 from linepose.config.outline import OutlineSection
 from linepose.config.schema import Section, faults_of, validated
 from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.errors import InputError
+from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.pose import rotation_vector_covariance, rotation_vector_pose
 from linepose.likelihood.names import NoiseModelName
 from linepose.likelihood.prior import PosePrior, pose_prior
-from linepose.pose import rotation_vector_covariance, rotation_vector_pose
-from linepose.rotations import Floats
-from linepose.simulate.settings import SimulationSettings, settings_from_dict
+from linepose.simulation.settings import SimulationSettings, settings_from_dict
 
 Triple = tuple[float, float, float]
 NonNegative = Annotated[float, Field(ge=0)]
@@ -110,7 +110,7 @@ def _simulation(values: Any) -> Any:
             raise
         near = difflib.get_close_matches(error.place.rsplit(".", 1)[-1], _keys(SimulationSettings), n=1)
         remedy = f"did you mean {near[0]}?" if near else "remove it"
-        raise InputError(error.place, "an unknown key", "a key of linepose.simulate.settings", remedy) from None
+        raise InputError(error.place, "an unknown key", "a key of linepose.simulation.settings", remedy) from None
 
 
 _UNKNOWN_KEY = "Unexpected keyword argument"  # pydantic's words for what a closed dataclass has no field for
@@ -137,7 +137,7 @@ class Platform(Section):
         description="Where the observations come from.", discriminator="kind"
     )
     simulation: Simulation | None = Field(
-        None, description="A simulated survey with a known truth: keys and units in linepose.simulate.settings."
+        None, description="A simulated survey with a known truth: keys and units in linepose.simulation.settings."
     )
     noise_model: NoiseModelName = Field(
         "published",

@@ -7,8 +7,8 @@ from typing import Any
 
 from linepose.config.platform import Platform, load_platform
 from linepose.config.study import DatasetSection, Study, check_study, load_dataset
-from linepose.datasets import find_dataset
 from linepose.errors import InputError
+from linepose.survey.datasets import find_dataset
 
 
 @dataclass(frozen=True)

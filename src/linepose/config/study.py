@@ -9,9 +9,9 @@ from pydantic import Field, NonNegativeInt, PositiveFloat
 from linepose.config.coverage import CoverageSection
 from linepose.config.platform import read_yaml
 from linepose.config.schema import Section, validated
+from linepose.estimation.optimise import Search
+from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
 from linepose.likelihood.names import sampling_section
-from linepose.optimise import Search
-from linepose.sampling import IndependenceSettings, SamplingSettings
 
 
 class DatasetSection(Section):

@@ -6,18 +6,18 @@ from pathlib import Path
 
 import numpy as np
 
+from linepose.arrays import Floats
 from linepose.config.experiments import RepeatabilitySection, SubsetSection
 from linepose.config.platform import Platform
+from linepose.estimation.outliers import stage_observations
 from linepose.experiments.subsets import check_subset, draw_by_rules
+from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood.base import Likelihood
-from linepose.observations import survey_from_table
-from linepose.outliers import stage_observations
-from linepose.platform_likelihood import platform_likelihood
-from linepose.pose import N_PARAMETERS
-from linepose.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, SAMPLES
-from linepose.rotations import Floats
-from linepose.stages import samples_from_table
-from linepose.storage import read_table
+from linepose.pipeline.platform_likelihood import platform_likelihood
+from linepose.pipeline.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, SAMPLES
+from linepose.pipeline.stages import samples_from_table
+from linepose.survey.observations import survey_from_table
+from linepose.tables import read_table
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,14 @@ import pandas as pd
 from numpy.typing import ArrayLike
 from scipy.stats import binomtest
 
-from linepose.distance import mahalanobis_distance
+from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.estimation.optimise import Search
+from linepose.estimation.optimisers import optimiser
+from linepose.geometry.distance import mahalanobis_distance
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
+from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
 from linepose.likelihood.base import Likelihood
-from linepose.optimise import Search
-from linepose.optimisers import optimiser
-from linepose.pose import N_PARAMETERS, POSE_COLUMNS
-from linepose.rotations import Floats, matrix_from_rotation_vector, rotation_vector_from_matrix
 
 START_COLUMNS = tuple(f"start_{name}" for name in POSE_COLUMNS)
 

@@ -12,17 +12,17 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from linepose.distance import mahalanobis_distance
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
+from linepose.estimation.identifiability import TURN_NAMES, in_body_axes
+from linepose.estimation.optimise import Search, laplace_covariance, optimise
+from linepose.estimation.sampling import SamplingSettings, sample
 from linepose.experiments.estimate import observation_list
 from linepose.experiments.jackknife import jackknife_sigma
-from linepose.identifiability import TURN_NAMES, in_body_axes
+from linepose.geometry.distance import mahalanobis_distance
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.clock_offset import ClockOffsetLikelihood
-from linepose.optimise import Search, laplace_covariance, optimise
-from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.rotations import Floats
-from linepose.sampling import SamplingSettings, sample
-from linepose.stages import sample_table
+from linepose.pipeline.stages import sample_table
 
 _logger = logging.getLogger(__name__)
 
@@ -64,7 +64,7 @@ def estimate_clock_offset(
 
     `correlation_pose` is that of the curvature, which no limit of the offset hides; 1 where the curvature leaves a
     direction open. The offset's sigma is the larger of the samples' and of leaving out observations. Columns as in
-    `experiment_schemas.CLOCK_OFFSET`; a sigma from the curvature is NaN where the data leave a direction open.
+    `schemas.CLOCK_OFFSET`; a sigma from the curvature is NaN where the data leave a direction open.
     """
     optimum = optimise(likelihood, start, search)
     laplace_sigma, view_sigma, with_pose = float("nan"), float("nan"), 1.0

@@ -14,18 +14,18 @@ import pandas as pd
 from numpy.typing import ArrayLike
 from scipy.stats import chi, kstest
 
-from linepose.batches import batch_ranges
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.estimation.noise_models import likelihood_of
+from linepose.estimation.optimise import Search
 from linepose.experiments.estimate import Estimate, estimate_nearby
 from linepose.experiments.repeatability import consistency, split_numbers
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.names import PUBLISHED, SHARED
-from linepose.noise_models import likelihood_of
-from linepose.observations import Survey
-from linepose.optimise import Search
-from linepose.pose import N_PARAMETERS, POSE_COLUMNS
-from linepose.rotations import Floats
+from linepose.pipeline.batches import batch_ranges
+from linepose.survey.observations import Survey
 
 NAMED_SUBSETS: Final = "the two named subsets"
 MINIMUM_OBSERVATIONS: Final = 4
@@ -140,7 +140,7 @@ def summarise_consistency(table: pd.DataFrame) -> pd.DataFrame:
 
     `sigma_factor` is what the sigmas would have to grow by for the median to fit; `kolmogorov` the largest gap between
     the distances' cumulative distribution and chi's with six degrees of freedom. Splits that leave a direction of the
-    pose open count as `n_open` and in nothing else. Columns as in `experiment_schemas.CONSISTENCY_SUMMARY`.
+    pose open count as `n_open` and in nothing else. Columns as in `schemas.CONSISTENCY_SUMMARY`.
     """
     rows = []
     for (noise_model, name), part in table.groupby(["noise_model", "comparison"], sort=False):

@@ -16,19 +16,19 @@ import numpy as np
 import pandas as pd
 from scipy.stats import chi2
 
-from linepose.balancing import balanced
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
+from linepose.estimation.balancing import balanced
+from linepose.estimation.importance import WeightedSamples, importance_samples
+from linepose.estimation.optimise import Optimum, climb, laplace_covariance
 from linepose.experiments.coverage_survey import NoiseLevels, draw_survey, levels_from_prior
-from linepose.importance import WeightedSamples, importance_samples
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.shared import SharedLikelihood, SharedPriors
-from linepose.observations import Survey
-from linepose.optimise import Optimum, climb, laplace_covariance
-from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.rotations import Floats
-from linepose.simulate.settings import SimulationSettings
+from linepose.simulation.settings import SimulationSettings
+from linepose.survey.observations import Survey
 
 N_RANKED: Final = 99  # draws among which the truth is ranked: a hundred ranks
 TRUE_COLUMNS: Final = tuple(f"true_{name}" for name in POSE_COLUMNS)

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 from scipy.stats import binomtest, chisquare
 
+from linepose.estimation.importance import TRUSTED_SHAPE
 from linepose.experiments.coverage import N_RANKED, RANK_COLUMNS, TRUE_COLUMNS
-from linepose.importance import TRUSTED_SHAPE
-from linepose.pose import POSE_COLUMNS
+from linepose.geometry.pose import POSE_COLUMNS
 
 CELL: Final = ["platform", "regime", "noise_model"]
 NOMINAL: Final = (0.68, 0.95)

@@ -11,17 +11,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linepose import rotations
-from linepose.camera import Camera
+from linepose.arrays import Floats
+from linepose.geometry import rotations
+from linepose.geometry.camera import Camera
 from linepose.likelihood.shared import SharedPriors
-from linepose.observations import Survey
-from linepose.rotations import Floats
-from linepose.simulate.faults import missing
-from linepose.simulate.navigation_error import navigation_errors
-from linepose.simulate.projection import Truth, exact_projections, pixel_of_direction
-from linepose.simulate.settings import NavigationErrorSettings, SimulationSettings
-from linepose.simulate.survey import faulty_observations, reported_covariance
-from linepose.simulate.trajectory import body_poses, time_us
+from linepose.simulation.faults import missing
+from linepose.simulation.navigation_error import navigation_errors
+from linepose.simulation.projection import Truth, exact_projections, pixel_of_direction
+from linepose.simulation.settings import NavigationErrorSettings, SimulationSettings
+from linepose.simulation.survey import faulty_observations, reported_covariance
+from linepose.simulation.trajectory import body_poses, time_us
+from linepose.survey.observations import Survey
 
 _RATE_STEP_S = 1e-3
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
+from linepose.estimation.optimise import Optimum, Search, climb, laplace_covariance, optimise
+from linepose.estimation.sampling import IndependenceSettings, SamplingSettings, sample
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
-from linepose.optimise import Optimum, Search, climb, laplace_covariance, optimise
-from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.rotations import Floats
-from linepose.sampling import IndependenceSettings, SamplingSettings, sample
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
 from linepose.likelihood.base import Likelihood
-from linepose.rotations import Floats
 
 _STEP: Final = 0.1  # sigmas
 _LEAST: Final = 0.3  # of the whole's curvature

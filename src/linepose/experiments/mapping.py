@@ -9,12 +9,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from linepose.camera import Camera, rays, undistort
-from linepose.observations import Survey
-from linepose.plane import Plane, fit_plane_by_height, intersect
-from linepose.pose import N_PARAMETERS
-from linepose.rotations import (
-    Floats,
+from linepose.arrays import Floats
+from linepose.geometry.camera import Camera, rays, undistort
+from linepose.geometry.plane import Plane, fit_plane_by_height, intersect
+from linepose.geometry.pose import N_PARAMETERS
+from linepose.geometry.rotations import (
     matrix_from_euler,
     matrix_from_rotation_vector,
     rotation_vector_from_matrix,
@@ -22,6 +21,7 @@ from linepose.rotations import (
     small_rotation_by_euler,
     small_rotation_by_rotation_vector,
 )
+from linepose.survey.observations import Survey
 
 PROJECTED_COLUMNS = ("north_m", "east_m", "down_m")
 _UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))

@@ -12,22 +12,22 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from linepose.camera import Camera
-from linepose.diagnostics import ChainDiagnostics, diagnose_samples
-from linepose.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
+from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.estimation.diagnostics import ChainDiagnostics, diagnose_samples
+from linepose.estimation.identifiability import identifiability, in_body_axes, in_words
+from linepose.estimation.noise_models import likelihood_of
+from linepose.estimation.optimise import Optimum, Search, optimise
+from linepose.estimation.sampling import Chain, IndependenceSettings, SamplingSettings, sample, section_of, stage_seed
 from linepose.experiments.estimate import observation_list
-from linepose.identifiability import identifiability, in_body_axes, in_words
+from linepose.geometry.camera import Camera
+from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.names import BALANCED, ROBUST, SHARED
 from linepose.likelihood.robust import RobustSharedLikelihood
 from linepose.likelihood.shared import LEVEL_NAMES, SHARED_PARAMETERS, SharedLikelihood
-from linepose.noise_models import likelihood_of
-from linepose.observations import Survey
-from linepose.optimise import Optimum, Search, optimise
-from linepose.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.rotations import Floats
-from linepose.sampling import Chain, IndependenceSettings, SamplingSettings, sample, section_of, stage_seed
+from linepose.survey.observations import Survey
 
 ALL, INLIERS = "all", "inliers"
 _ONLY_ON: Final = dict.fromkeys((BALANCED, ROBUST), (ALL, INLIERS))  # elsewhere they would cost more than they tell
@@ -96,7 +96,7 @@ def noise_model_table(fits: list[Fit], true_pose: ArrayLike | None = None) -> pd
     """One row a fit: pose, sampled sigmas, levels, the chain's worst diagnostics, and how far it is from two others.
 
     The two are the shared-error estimate of the accepted observations, and the true pose (6,) where it is known, in
-    sigmas of the fit itself. Columns as in `experiment_schemas.NOISE_MODELS`.
+    sigmas of the fit itself. Columns as in `schemas.NOISE_MODELS`.
     """
     reference = chosen(fits, SHARED, INLIERS)
     covariance = reference.pose_covariance()
@@ -158,7 +158,7 @@ def identifiability_table(fits: list[Fit], hand_pose: ArrayLike, hand_covariance
     """One row a parameter of the shared-error model, from the accepted observations: prior against posterior.
 
     Rotations are turns about the body's axes. The hand measurement, a pose (6,) with covariance (6, 6), stands for the
-    pose's prior, which takes no part in the estimate. Columns as in `experiment_schemas.IDENTIFIABILITY`.
+    pose's prior, which takes no part in the estimate. Columns as in `schemas.IDENTIFIABILITY`.
     """
     fit = chosen(fits, SHARED, INLIERS)
     likelihood = fit.likelihood
@@ -183,7 +183,7 @@ def identifiability_table(fits: list[Fit], hand_pose: ArrayLike, hand_covariance
 def weights_table(fits: list[Fit], accepted: ArrayLike) -> pd.DataFrame:
     """One row an observed point: its weight and its view's under the robust model of all observations.
 
-    `removed` says whether the outlier removal took the observation out. Columns as in `experiment_schemas.WEIGHTS`.
+    `removed` says whether the outlier removal took the observation out. Columns as in `schemas.WEIGHTS`.
     """
     fit = chosen(fits, ROBUST, ALL)
     likelihood = fit.likelihood

@@ -12,10 +12,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from linepose.identifiability import in_body_axes
+from linepose.arrays import Floats
+from linepose.estimation.identifiability import in_body_axes
+from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood.prior import PosePrior
-from linepose.pose import N_PARAMETERS
-from linepose.rotations import Floats
 
 DATA: Final = "data"
 PRIOR: Final = "prior"
@@ -35,7 +35,7 @@ def prior_table(
 
     `names`, `parameters` (P,) and `covariance` (P, P) are the estimate's; `hand` is the hand measurement, in the
     estimate as a prior or not, as `counted_in` says. `others` has centre and sigma of the prior that a noise model
-    brings for parameters beyond the pose; ones without are left out. Columns as in `experiment_schemas.PRIOR`.
+    brings for parameters beyond the pose; ones without are left out. Columns as in `schemas.PRIOR`.
     """
     vector = np.asarray(parameters, dtype=float)
     turned_names, turned = in_body_axes(names, vector, covariance)

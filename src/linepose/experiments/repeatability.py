@@ -10,23 +10,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from linepose.distance import (
+from linepose.errors import InputError
+from linepose.estimation.optimise import Search
+from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
+from linepose.experiments.estimate import Estimate, estimate_by_curvature, estimate_by_sampling, observation_list
+from linepose.geometry.distance import (
     euclidean_distance_m,
     geodesic_angle_rad,
     mahalanobis_between,
     mahalanobis_distance,
     p_value,
 )
-from linepose.errors import InputError
-from linepose.experiments.estimate import (
-    Estimate,
-    estimate_by_curvature,
-    estimate_by_sampling,
-    observation_list,
-)
 from linepose.likelihood.base import Likelihood
-from linepose.optimise import Search
-from linepose.sampling import IndependenceSettings, SamplingSettings
 
 
 def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> None:

@@ -9,11 +9,11 @@ from dataclasses import replace
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from linepose.camera import Camera
-from linepose.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
+from linepose.estimation.optimise import Search
 from linepose.experiments.estimate import estimate_by_curvature
+from linepose.geometry.camera import Camera
+from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
 from linepose.likelihood.base import Likelihood
-from linepose.optimise import Search
 
 NOMINAL = "nominal"
 

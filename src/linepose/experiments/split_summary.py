@@ -4,15 +4,15 @@ import numpy as np
 import pandas as pd
 from scipy.stats import chi
 
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
-from linepose.pose import N_PARAMETERS
-from linepose.rotations import Floats
+from linepose.geometry.pose import N_PARAMETERS
 
 
 def known_distances(splits: pd.DataFrame) -> Floats:
     """Distances in sigmas (K,) of the splits that determine both poses.
 
-    `splits` as in `experiment_schemas.SPLITS`; raises EstimationError where there is none.
+    `splits` as in `schemas.SPLITS`; raises EstimationError where there is none.
     """
     distance = splits["mahalanobis"].to_numpy(dtype=float)
     known = distance[np.isfinite(distance)]

@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.estimation.optimise import Search
+from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
 from linepose.experiments.estimate import estimate_by_sampling, observation_list
 from linepose.likelihood.base import Likelihood
-from linepose.observations import EULER_COLUMNS, Survey
-from linepose.optimise import Search
-from linepose.rotations import Floats
-from linepose.sampling import IndependenceSettings, SamplingSettings
+from linepose.survey.observations import EULER_COLUMNS, Survey
 
 _RAYS_PER_POINT: Final = 2
 BODY_ANGLES: Final = tuple(name.removesuffix("_rad") for name in EULER_COLUMNS)

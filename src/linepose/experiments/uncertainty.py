@@ -3,8 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.result_schemas import LAPLACE_SIGMA_COLUMNS
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.pipeline.result_schemas import LAPLACE_SIGMA_COLUMNS
 
 METHODS = ("mcmc", "laplace")
 

@@ -25,15 +25,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import check_pose
 from linepose.likelihood.balanced_rows import row_log_likelihood, rows_log_likelihood
 from linepose.likelihood.shared import SharedLikelihood, SharedPriors
 from linepose.likelihood.shared_kernel import Levels, Optics, empty_lines, linearise, optics_at
 from linepose.likelihood.shared_marginal import initial_points
-from linepose.observations import Survey
-from linepose.pose import check_pose
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,11 @@
 import numpy as np
 from numba import njit, prange
 
+from linepose.arrays import Floats
 from linepose.likelihood.shared_arrays import SharedArrays
 from linepose.likelihood.shared_kernel import FixedOptics, Levels, Optics, empty_lines, levels_at, linearise, optics_at
 from linepose.likelihood.shared_marginal import marginal, normal_equations, solve_system
 from linepose.likelihood.shared_rows import log_prior
-from linepose.rotations import Floats
 
 
 @njit(cache=True, error_model="numpy")

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linepose.camera import Camera
-from linepose.observations import Survey
-from linepose.pose import N_PARAMETERS, POSE_COLUMNS
-from linepose.rotations import Floats
+from linepose.arrays import Floats
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
+from linepose.survey.observations import Survey
 
 
 @dataclass(frozen=True)

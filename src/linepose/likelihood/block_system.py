@@ -9,7 +9,7 @@ as the observations is ever factorised. Of symmetric matrices only the upper tri
 import numpy as np
 from numba import njit
 
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 
 @njit(cache=True, error_model="numpy")

@@ -13,12 +13,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.likelihood.base import Likelihood, Residuals
-from linepose.navigation_log import NavigationLog
-from linepose.navigation_motion import survey_at, survey_motions
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.survey.navigation_log import NavigationLog
+from linepose.survey.navigation_motion import survey_at, survey_motions
+from linepose.survey.observations import Survey
 
 OFFSET_NAME: Final = "clock_offset_s"
 STEPS: Final = 50  # of the grid, to the largest offset on either side

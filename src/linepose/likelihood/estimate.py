@@ -1,9 +1,9 @@
 """Eq. 17 compiled: the mean of all nearest points to each pattern point, weighted by their inverse covariances."""
 
+from linepose.arrays import Floats
 from linepose.likelihood import layout as at
 from linepose.likelihood.compiling import part
 from linepose.likelihood.layout import LANES
-from linepose.rotations import Floats
 
 
 @part

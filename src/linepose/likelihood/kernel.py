@@ -10,6 +10,7 @@ import numpy as np
 from numba import config as numba_config
 from numba import get_thread_id, njit, prange  # type: ignore[attr-defined]
 
+from linepose.arrays import Floats
 from linepose.likelihood import layout as at
 from linepose.likelihood.compiling import FUSED_ARITHMETIC, part
 from linepose.likelihood.estimate import gather, solve
@@ -17,7 +18,6 @@ from linepose.likelihood.layout import LANES
 from linepose.likelihood.pairs import intersect
 from linepose.likelihood.rays import camera_axes, cast, spread
 from linepose.likelihood.reprojection import reproject
-from linepose.rotations import Floats
 
 MAXIMUM_THREADS: int = numba_config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
 _SOURCES = ("compiling", "estimate", "kernel", "layout", "pairs", "rays", "reprojection")

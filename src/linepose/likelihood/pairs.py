@@ -5,10 +5,10 @@ by `(h.a + w) / D`, where w does not depend on a. The inverse of its covariance 
 the variance of w that a does not explain, so no 3 x 3 matrix is inverted. Both ends of a pair share their geometry.
 """
 
+from linepose.arrays import Floats
 from linepose.likelihood import layout as at
 from linepose.likelihood.compiling import part
 from linepose.likelihood.layout import LANES
-from linepose.rotations import Floats
 
 # Sine squared of the angle between rays at which they count as parallel: the nearest point has no digit left there.
 PARALLEL_SINE_SQUARED = 1e-16

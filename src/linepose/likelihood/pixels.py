@@ -9,10 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linepose.camera import normalised_from_pixel
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
+from linepose.geometry.camera import normalised_from_pixel
 from linepose.likelihood.base import Likelihood, Residuals
-from linepose.rotations import Floats
 
 
 class PixelLikelihood(Likelihood):

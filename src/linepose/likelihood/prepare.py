@@ -4,13 +4,13 @@ import logging
 
 import numpy as np
 
-from linepose import rotations
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.geometry import rotations
+from linepose.geometry.camera import Camera
 from linepose.likelihood import layout
 from linepose.likelihood.layout import LANES
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 _logger = logging.getLogger(__name__)
 _PAIRS_6 = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linepose.distance import difference_covariance, pose_difference
+from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.geometry.distance import difference_covariance, pose_difference
+from linepose.geometry.pose import N_PARAMETERS, check_pose
 from linepose.likelihood.base import Likelihood, Residuals
-from linepose.pose import N_PARAMETERS, check_pose
-from linepose.rotations import Floats
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood import kernel
 from linepose.likelihood import layout as at
 from linepose.likelihood.base import Likelihood, Residuals
 from linepose.likelihood.layout import LANES
 from linepose.likelihood.prepare import point_origins, survey_rows, usable
-from linepose.observations import Survey
-from linepose.pose import N_PARAMETERS
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 _COVARIANCE = (at.E_NN, at.E_NE, at.E_ND, at.E_NE, at.E_EE, at.E_ED, at.E_ND, at.E_ED, at.E_DD)
 

@@ -6,10 +6,10 @@ covariance a ray. Axes x, y, z here are the body's, n, e, d the world's; columns
 
 import math
 
+from linepose.arrays import Floats
 from linepose.likelihood import layout as at
 from linepose.likelihood.compiling import part
 from linepose.likelihood.layout import LANES
-from linepose.rotations import Floats
 
 _SMALL_ANGLE_SQUARED = 1e-4  # below this the series is exact to double precision
 

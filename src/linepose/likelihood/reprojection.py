@@ -1,9 +1,9 @@
 """Eq. 18-21 compiled: the estimates reprojected into every observation, their errors and the errors' variances."""
 
+from linepose.arrays import Floats
 from linepose.likelihood import layout as at
 from linepose.likelihood.compiling import part
 from linepose.likelihood.layout import LANES
-from linepose.rotations import Floats
 
 # Squared error below which it has no direction of its own; the error's variance is then taken along the scan line.
 NO_ERROR = 1e-100

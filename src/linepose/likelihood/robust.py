@@ -24,14 +24,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.geometry.camera import Camera
 from linepose.likelihood.robust_marginal import Freedom, robust_marginal, row_log_likelihood, rows_log_likelihood
 from linepose.likelihood.shared import SharedLikelihood, SharedPriors
 from linepose.likelihood.shared_kernel import levels_at, optics_at
 from linepose.likelihood.shared_marginal import Marginal
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 
 @dataclass(frozen=True)

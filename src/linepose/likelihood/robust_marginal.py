@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
+from linepose.arrays import Floats
 from linepose.likelihood.block_system import covariance_blocks, solve_blocks
 from linepose.likelihood.shared_arrays import SharedArrays
 from linepose.likelihood.shared_kernel import (
@@ -31,7 +32,6 @@ from linepose.likelihood.shared_marginal import (
     squared_residuals,
 )
 from linepose.likelihood.shared_rows import log_prior
-from linepose.rotations import Floats
 
 MAXIMUM_SWEEPS = 60
 LARGEST_ECHO = 0.8

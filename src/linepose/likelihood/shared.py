@@ -25,16 +25,16 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.base import Likelihood, Residuals
 from linepose.likelihood.shared_arrays import shared_arrays
 from linepose.likelihood.shared_kernel import FixedOptics, Lines, empty_lines, levels_at, linearise, optics_at
 from linepose.likelihood.shared_marginal import Marginal, marginal, normal_equations
 from linepose.likelihood.shared_rows import row_log_likelihood, rows_log_likelihood
-from linepose.observations import Survey
-from linepose.pose import POSE_COLUMNS
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 LEVEL_NAMES: Final = ("log_shared_level", "log_white_level", "log_pixel_level")
 SHARED_PARAMETERS: Final = (*POSE_COLUMNS, *LEVEL_NAMES, "principal_point_px", "focal_length_m")

@@ -5,10 +5,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linepose import rotations
+from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.geometry import rotations
+from linepose.survey.observations import Survey
 
 NEGATIVE_EIGENVALUE: Final = 1e-9  # of the largest of the same kind: rounding in a file, not an invalid covariance
 

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from linepose.arrays import Floats
 from linepose.likelihood.block_system import factorise, solve_transposed, solve_upper
 from linepose.likelihood.shared_arrays import SharedArrays
-from linepose.rotations import Floats
 
 SMALL_ANGLE_RAD = 1e-4
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from linepose.arrays import Floats
 from linepose.likelihood.block_system import factorise, solve_blocks, solve_transposed, solve_upper
 from linepose.likelihood.shared_arrays import SharedArrays
 from linepose.likelihood.shared_kernel import (
@@ -22,7 +23,6 @@ from linepose.likelihood.shared_kernel import (
     linearise,
     project_line,
 )
-from linepose.rotations import Floats
 
 TRIANGULATION_STEPS = 1
 MARGINAL_STEPS = 2

@@ -3,10 +3,10 @@
 import numpy as np
 from numba import njit, prange
 
+from linepose.arrays import Floats
 from linepose.likelihood.shared_arrays import SharedArrays
 from linepose.likelihood.shared_kernel import FixedOptics, levels_at, optics_at
 from linepose.likelihood.shared_marginal import marginal
-from linepose.rotations import Floats
 
 
 @njit(cache=True, error_model="numpy")

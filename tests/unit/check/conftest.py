@@ -8,8 +8,7 @@ import pytest
 from linepose.config.new_platform import NewPlatform, write_platform
 from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
-
-from ..recorded_files import write_platform_files
+from unit.recorded_files import write_platform_files
 
 CONFIG = Path(__file__).parents[3] / "config"
 N_OBSERVATIONS = 12

@@ -3,19 +3,18 @@
 import numpy as np
 import pytest
 
-from linepose.camera import rays
 from linepose.check.hand_measured import expected_error_px, hand_findings
 from linepose.check.information import published_covariance, shared_covariance
 from linepose.check.motions import best_motions, motions
 from linepose.check.prediction import predict
 from linepose.check.replay import crossing, in_camera, replayed
 from linepose.config.platform import load_platform
+from linepose.estimation.optimise import laplace_covariance, optimise
 from linepose.experiments.subsets import body_angles_rad
+from linepose.geometry.camera import rays
+from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
 from linepose.likelihood.published import PublishedLikelihood
-from linepose.optimise import laplace_covariance, optimise
-from linepose.rotations import matrix_from_euler, matrix_from_rotation_vector
-
-from ..recorded_files import simulated_survey
+from unit.recorded_files import simulated_survey
 
 
 @pytest.fixture(scope="module")

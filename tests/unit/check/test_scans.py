@@ -13,9 +13,8 @@ from linepose.check.platform import check_platform
 from linepose.config.new_platform import NewPlatform, write_platform
 from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
-
-from ..recorded_files import write_scan_files
-from .conftest import CONFIG
+from unit.check.conftest import CONFIG
+from unit.recorded_files import write_scan_files
 
 N_SCANS = 10
 

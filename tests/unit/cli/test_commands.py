@@ -14,9 +14,8 @@ from linepose.cli import run as run_command
 from linepose.cli.app import app
 from linepose.cli.check import _without_warnings
 from linepose.config.platform import load_platform
-
-from .. import made_up
-from ..recorded_files import write_platform_files
+from unit import made_up
+from unit.recorded_files import write_platform_files
 
 GIVEN = [
     *("--focal-length-mm", "8.2", "--pixel-pitch-um", "7.407407", "--pixels", "648"),
@@ -266,7 +265,7 @@ def test_export_writes_below_the_results_or_where_it_is_told(finished):
 
 
 def test_export_tells_its_formats(finished):
-    from linepose.exports import EXPORTS
+    from linepose.output.exports import EXPORTS
 
     told = given("export", "--list")
     assert told.exit_code == 0

@@ -3,8 +3,8 @@ import pytest
 
 from linepose.config.study import check_study, load_dataset
 from linepose.errors import InputError
-from linepose.optimise import Search
-from linepose.sampling import SamplingSettings
+from linepose.estimation.optimise import Search
+from linepose.estimation.sampling import SamplingSettings
 
 
 def message_of(values):

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from linepose.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.base import Likelihood, Residuals
-from linepose.observations import Survey
-from linepose.pose import POSE_COLUMNS
+from linepose.survey.observations import Survey
 
 TRUE_POSE = np.array([0.19, -0.14, -0.79, -0.82, 0.74, -1.43])
 SIGMA = np.array([0.1, 0.15, 0.2, 0.03, 0.04, 0.02])

@@ -7,9 +7,9 @@ import pytest
 from linepose.config.experiments import RuleSection, SubsetSection
 from linepose.errors import InputError
 from linepose.experiments.accepted import Accepted, read_reference
-from linepose.pose import POSE_COLUMNS
-from linepose.result_schemas import LAPLACE_SIGMA_COLUMNS, OPTIMA, SAMPLES
-from linepose.storage import write_table
+from linepose.geometry.pose import POSE_COLUMNS
+from linepose.pipeline.result_schemas import LAPLACE_SIGMA_COLUMNS, OPTIMA, SAMPLES
+from linepose.tables import write_table
 
 
 @pytest.fixture

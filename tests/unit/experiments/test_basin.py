@@ -7,11 +7,10 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import kstest
 
 from linepose.errors import InputError
+from linepose.estimation.optimise import Optimum
+from linepose.estimation.optimisers import OPTIMISERS
 from linepose.experiments.basin import BasinGrid, Region, Sweep, start_pose, summarise, wilson_interval
-from linepose.optimise import Optimum
-from linepose.optimisers import OPTIMISERS
-
-from .conftest import SIGMA, TRUE_POSE
+from unit.experiments.conftest import SIGMA, TRUE_POSE
 
 GRID = BasinGrid(n_distances=6, n_angles=5)
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from linepose.config.platform import load_platform
-from linepose.experiment_schemas import CLOCK_OFFSET
+from linepose.estimation.optimise import laplace_covariance, optimise
+from linepose.estimation.sampling import SamplingSettings
 from linepose.experiments.clock_offset import (
     CORRELATION_COLUMNS,
     Told,
@@ -14,13 +15,11 @@ from linepose.experiments.clock_offset import (
     correlation_with_all,
     estimate_clock_offset,
 )
-from linepose.optimise import laplace_covariance, optimise
-from linepose.pose import POSE_COLUMNS
-from linepose.sampling import SamplingSettings
-from linepose.simulate.navigation_error import mixed
-from linepose.storage import read_table, write_table
-
-from .. import clock_survey
+from linepose.experiments.schemas import CLOCK_OFFSET
+from linepose.geometry.pose import POSE_COLUMNS
+from linepose.simulation.navigation_error import mixed
+from linepose.tables import read_table, write_table
+from unit import clock_survey
 
 PLANTED_S = 0.03
 LARGE_S = 0.1  # six sigmas of ten passes

@@ -5,16 +5,15 @@ import pytest
 from scipy.stats import chi
 
 from linepose.errors import InputError
-from linepose.experiment_schemas import CONSISTENCY, CONSISTENCY_SUMMARY
 from linepose.experiments.consistency import NAMED_SUBSETS, Comparisons, Group, groups_of, summarise_consistency
 from linepose.experiments.repeatability import split_numbers
+from linepose.experiments.schemas import CONSISTENCY, CONSISTENCY_SUMMARY
+from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.shared import SharedLikelihood
-from linepose.pose import POSE_COLUMNS
-
-from ..likelihood.small_survey import CAMERA, POSE, Truth, make_survey
-from .conftest import TRUE_POSE, GaussianLikelihood
-from .conftest import make_survey as made_survey
+from unit.experiments.conftest import TRUE_POSE, GaussianLikelihood
+from unit.experiments.conftest import make_survey as made_survey
+from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 SIGMA = 1e-3 * np.array([10, 15, 20, 3, 4, 2])  # so small that turns and differences of rotation vectors are one
 

@@ -13,7 +13,7 @@ from linepose.experiments.coverage_summary import (
     rank_p_value,
     stated_probabilities,
 )
-from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 
 
 def surveys(credibility, failed=None, regime="white"):

@@ -9,7 +9,7 @@ from linepose.experiments.coverage import Cell
 from linepose.experiments.coverage_survey import NoiseLevels, draw_survey, levels_from_prior
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.shared import SharedPriors
-from linepose.simulate.survey import faulty_observations, simulate_survey, without_faults
+from linepose.simulation.survey import faulty_observations, simulate_survey, without_faults
 
 PLATFORMS = Path(__file__).parents[3] / "config" / "platforms"
 SILENT = NoiseLevels(pixel=0.0, intrinsics=0.0)

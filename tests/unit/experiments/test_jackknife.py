@@ -5,8 +5,7 @@ import pytest
 
 from linepose.errors import EstimationError
 from linepose.experiments.jackknife import derivatives, jackknife_sigma
-
-from .conftest import SIGMA, TRUE_POSE
+from unit.experiments.conftest import SIGMA, TRUE_POSE
 
 
 def test_sigma_is_that_of_the_mean_whatever_the_model_says(gaussian):

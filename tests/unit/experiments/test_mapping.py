@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linepose.camera import pixel_from_normalised
-from linepose.distance import geodesic_angle_rad
 from linepose.experiments import mapping
 from linepose.experiments.mapping import perturbed, project, projection_covariance, spread_mm
-from linepose.plane import Plane
-from linepose.rotations import matrix_from_euler, matrix_from_rotation_vector
+from linepose.geometry.camera import pixel_from_normalised
+from linepose.geometry.distance import geodesic_angle_rad
+from linepose.geometry.plane import Plane
+from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
 
 POSE = np.array([0.2, -0.1, -0.8, -0.1, 0.15, -1.5])
 PLANE = Plane(np.array([0.0, 0.0, 0.3]), np.array([0.1, -0.05, 1.0]) / np.linalg.norm([0.1, -0.05, 1.0]))

@@ -3,7 +3,7 @@ import pyarrow as pa
 import pytest
 
 from linepose.errors import InputError
-from linepose.experiment_schemas import IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
+from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
 from linepose.experiments.noise_models import (
     chosen,
     fit_noise_models,
@@ -11,9 +11,8 @@ from linepose.experiments.noise_models import (
     noise_model_table,
     weights_table,
 )
-from linepose.sampling import IndependenceSettings, SamplingSettings
-
-from ..likelihood.small_survey import CAMERA, POSE, Truth, make_survey
+from linepose.experiments.schemas import IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
+from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 SHORT = IndependenceSettings(n_walkers=24, n_burn_in=40, n_steps=30)
 SETTINGS = {"published": SamplingSettings(12, 5, 20), "shared": SHORT, "balanced": SHORT, "robust": SHORT}

@@ -5,11 +5,10 @@ import pytest
 
 from linepose.config.platform import Platform
 from linepose.experiments.prior import data_weight, prior_table
+from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.prior import pose_prior
 from linepose.likelihood.shared import SHARED_PARAMETERS
-from linepose.pose import POSE_COLUMNS
-
-from .. import made_up
+from unit import made_up
 
 CENTRE = np.array([0.2, 0.0, -0.8, -0.76, 0.76, -1.43])
 PRIOR = np.diag([0.1, 0.1, 0.1, 0.03, 0.03, 0.03]) ** 2

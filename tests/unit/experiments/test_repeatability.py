@@ -6,16 +6,9 @@ from scipy.stats import kstest
 
 from linepose.errors import InputError
 from linepose.experiments.estimate import estimate_by_curvature
-from linepose.experiments.repeatability import (
-    check_disjoint,
-    consistency,
-    leave_one_out,
-    random_splits,
-    split_numbers,
-)
-from linepose.pose import POSE_COLUMNS
-
-from .conftest import SIGMA, TRUE_POSE, GaussianLikelihood, make_survey
+from linepose.experiments.repeatability import check_disjoint, consistency, leave_one_out, random_splits, split_numbers
+from linepose.geometry.pose import POSE_COLUMNS
+from unit.experiments.conftest import SIGMA, TRUE_POSE, GaussianLikelihood, make_survey
 
 
 class OpenLikelihood(GaussianLikelihood):

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from linepose.experiments.sensitivity import NOMINAL, camera_changes, sensitivity
-from linepose.pose import POSE_COLUMNS, SIGMA_COLUMNS
-
-from .conftest import SIGMA, TRUE_POSE, GaussianLikelihood
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from unit.experiments.conftest import SIGMA, TRUE_POSE, GaussianLikelihood
 
 
 def test_camera_changes_are_one_sigma_of_one_quantity(camera):

@@ -4,14 +4,8 @@ import numpy as np
 import pytest
 
 from linepose.errors import InputError
-from linepose.experiments.subsets import (
-    AngleRule,
-    body_angles_rad,
-    check_subset,
-    draw_by_rules,
-    subset_estimates,
-)
-from linepose.sampling import SamplingSettings
+from linepose.estimation.sampling import SamplingSettings
+from linepose.experiments.subsets import AngleRule, body_angles_rad, check_subset, draw_by_rules, subset_estimates
 
 SMALL = AngleRule("roll", 0.0, np.radians(1.9), 2)
 LARGE = AngleRule("roll", np.radians(3.3), np.radians(5.8), 3)

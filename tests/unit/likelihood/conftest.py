@@ -1,7 +1,7 @@
 import pytest
-import surveys
 
-from linepose.observations import Survey
+from linepose.survey.observations import Survey
+from unit.likelihood import surveys
 
 
 @pytest.fixture(scope="session")

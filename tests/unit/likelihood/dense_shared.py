@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from linepose.camera import Camera
-from linepose.observations import Survey
+from linepose.geometry.camera import Camera
+from linepose.survey.observations import Survey
 
 STEP = 1e-30
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from linepose.camera import Camera
-from linepose.observations import Survey
+from linepose.geometry.camera import Camera
+from linepose.survey.observations import Survey
 
 FOLDER = Path(os.environ.get("LINEPOSE_FIELD_DATA", Path(__file__).parents[4] / "shared" / "ladybird"))
 PRESENT = (FOLDER / "nav_covs.csv").is_file()

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from linepose.camera import Camera
-from linepose.observations import Survey
-from linepose.rotations import matrix_from_rotation_vector
+from linepose.geometry.camera import Camera
+from linepose.geometry.rotations import matrix_from_rotation_vector
+from linepose.survey.observations import Survey
 
 Array = NDArray[np.float64]
 STEP = 1e-30

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linepose.camera import Camera, CameraSigmas
-from linepose.observations import Survey
-from linepose.rotations import matrix_from_euler, matrix_from_rotation_vector
+from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
+from linepose.survey.observations import Survey
 
 CAMERA = Camera(focal_length_m=8.0e-3, pixel_pitch_m=8.0e-6, n_pixels=600, principal_point_px=300.0)
 DISTORTED = Camera(8.0e-3, 8.0e-6, 600, 300.0, k1=-0.2, k2=0.1, sigmas=CameraSigmas(v_px=0.8))

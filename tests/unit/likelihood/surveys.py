@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from linepose import rotations
-from linepose.camera import Camera, CameraSigmas, pixel_from_normalised
-from linepose.observations import Survey
+from linepose.geometry import rotations
+from linepose.geometry.camera import Camera, CameraSigmas, pixel_from_normalised
+from linepose.survey.observations import Survey
 
 FIELD_FOLDER = Path(__file__).resolve().parents[4] / "shared" / "ladybird"
 FIELD_CAMERA = Camera(focal_length_m=8.2e-3, pixel_pitch_m=4.8e-3 / 648, n_pixels=648, principal_point_px=323.0)

@@ -2,17 +2,17 @@
 
 from dataclasses import replace
 
-import dense_shared
 import numpy as np
 import pytest
-from small_survey import CAMERA, POSE, Truth, make_survey, without
 
 from linepose.errors import InputError
+from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
 from linepose.likelihood.balanced import BalancedLikelihood, Reference, body_rates
 from linepose.likelihood.balanced_rows import log_determinant_at
 from linepose.likelihood.shared import SharedLikelihood
 from linepose.likelihood.shared_kernel import Levels, optics_at
-from linepose.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
+from unit.likelihood import dense_shared
+from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey, without
 
 LEVELS = (0.6, 0.2, 1.3)
 OTHERS = Levels(0.9, 0.05, 0.7)

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from small_survey import CAMERA, POSE, Truth, make_survey
 
-from linepose.balancing import balanced, reference_from
-from linepose.optimise import climb
+from linepose.estimation.balancing import balanced, reference_from
+from linepose.estimation.optimise import climb
+from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 START = POSE + np.array([0.05, -0.05, 0.04, 0.03, -0.02, 0.02])
 

@@ -4,12 +4,12 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from small_survey import CAMERA, POSE, Truth, make_survey, without
 
 from linepose.errors import LineposeError
+from linepose.estimation.noise_models import NOISE_MODELS, likelihood_of
 from linepose.likelihood.names import NoiseModelName
 from linepose.likelihood.shared import SharedLikelihood
-from linepose.noise_models import NOISE_MODELS, likelihood_of
+from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey, without
 
 MODELS = pytest.mark.parametrize("noise_model", NOISE_MODELS)
 

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surveys import DISTORTED_CAMERA, FIELD_CAMERA, INLIERS, SYNTHETIC_POSE, synthetic_survey
 
+from linepose.estimation.optimise import optimise
 from linepose.likelihood.pixels import PixelLikelihood
 from linepose.likelihood.published import PublishedLikelihood
-from linepose.optimise import optimise
+from unit.likelihood.surveys import DISTORTED_CAMERA, FIELD_CAMERA, INLIERS, SYNTHETIC_POSE, synthetic_survey
 
 CAMERA = replace(DISTORTED_CAMERA, k1=0.0, k2=0.0)
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from scipy.stats import multivariate_normal
-from surveys import DISTORTED_CAMERA, SYNTHETIC_POSE, synthetic_survey
 
 from linepose.errors import InputError
+from linepose.estimation.noise_models import likelihood_of
+from linepose.estimation.optimise import laplace_covariance, optimise
 from linepose.likelihood.prior import WithPrior, pose_prior
-from linepose.noise_models import likelihood_of
-from linepose.optimise import laplace_covariance, optimise
+from unit.likelihood.surveys import DISTORTED_CAMERA, SYNTHETIC_POSE, synthetic_survey
 
 CENTRE = np.array([0.2, -0.1, -0.8, -0.8, 0.75, -1.4])
 COVARIANCE = np.diag([0.1, 0.1, 0.1, 0.03, 0.04, 0.05]) ** 2

@@ -5,19 +5,19 @@ from dataclasses import replace
 import numba
 import numpy as np
 import pytest
-import reference
 from scipy.optimize import minimize
-from surveys import DISTORTED_CAMERA, FIELD_CAMERA, INLIERS, SYNTHETIC_POSE, synthetic_survey, with_gaps
 
-from linepose.camera import Camera, CameraSigmas
 from linepose.errors import EstimationError, InputError
+from linepose.geometry.camera import Camera, CameraSigmas
 from linepose.likelihood import kernel, layout
 from linepose.likelihood.layout import LANES
 from linepose.likelihood.prepare import survey_rows
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.rays import cast, spread
 from linepose.likelihood.reprojection import reproject
-from linepose.observations import Survey
+from linepose.survey.observations import Survey
+from unit.likelihood import reference
+from unit.likelihood.surveys import DISTORTED_CAMERA, FIELD_CAMERA, INLIERS, SYNTHETIC_POSE, synthetic_survey, with_gaps
 
 # Complex-step Jacobians are exact to rounding; inverting covariances of condition 1e4 to 1e6 leaves some 1e-11.
 RELATIVE = 1e-9

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from linepose import rotations
+from linepose.geometry import rotations
 from linepose.likelihood.rays import camera_axes
 
 

@@ -1,14 +1,13 @@
-import dense_shared
-import field_data
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 from scipy.special import digamma, gammaln, logsumexp
-from small_survey import CAMERA, POSE, Truth, make_survey, without
 
 from linepose.errors import EstimationError, InputError
 from linepose.likelihood.robust import RobustPriors, RobustSharedLikelihood
 from linepose.likelihood.shared import SharedLikelihood
+from unit.likelihood import dense_shared, field_data
+from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey, without
 
 NO_TAILS = RobustPriors(view_degrees_of_freedom=1e9, point_degrees_of_freedom=1e9)
 LEVELS = (0.6, 0.2, 1.0)

@@ -1,10 +1,10 @@
-import dense_shared
 import numpy as np
 import pytest
-from small_survey import CAMERA, DISTORTED, POSE, Truth, make_survey, without
 
 from linepose.errors import EstimationError, InputError
 from linepose.likelihood.shared import SharedLikelihood, SharedPriors
+from unit.likelihood import dense_shared
+from unit.likelihood.small_survey import CAMERA, DISTORTED, POSE, Truth, make_survey, without
 
 RELATIVE = 1e-9  # the issue's; rounding of the dense form's solves is about 1e-12
 

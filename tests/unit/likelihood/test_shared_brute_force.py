@@ -1,13 +1,13 @@
 """The marginal likelihood against an integral over every unknown by importance sampling, projection not linearised."""
 
-import dense_shared
 import numpy as np
 import pytest
 from scipy.special import logsumexp
-from small_survey import CAMERA, POSE, Truth, make_survey
 
+from linepose.geometry.rotations import matrix_from_euler
 from linepose.likelihood.shared import SharedLikelihood
-from linepose.rotations import matrix_from_euler
+from unit.likelihood import dense_shared
+from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 N_VIEWS, N_POINTS = 3, 2
 

@@ -1,11 +1,11 @@
 """The shared-error model on the Ladybird field data: the numbers that a separate, dense prototype found."""
 
-import field_data
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 
 from linepose.likelihood.shared import SharedLikelihood
+from unit.likelihood import field_data
 
 pytestmark = [pytest.mark.field, pytest.mark.skipif(not field_data.PRESENT, reason="no field data")]
 SCALE = [*[0.05] * 3, *[0.01] * 3, *[0.5] * 3, 0.6, 3e-5]

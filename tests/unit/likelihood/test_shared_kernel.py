@@ -1,9 +1,7 @@
 """The compiled geometry: projections and their derivatives against complex steps, matrices against numpy."""
 
-import dense_shared
 import numpy as np
 import pytest
-from small_survey import CAMERA, DISTORTED, POSE, Truth, make_survey
 
 from linepose.likelihood.block_system import covariance_blocks, factorise, inverse_of_factored, solve_blocks
 from linepose.likelihood.shared_arrays import shared_arrays
@@ -15,6 +13,8 @@ from linepose.likelihood.shared_kernel import (
     matrix_from_rotation_vector,
     optics_at,
 )
+from unit.likelihood import dense_shared
+from unit.likelihood.small_survey import CAMERA, DISTORTED, POSE, Truth, make_survey
 
 ROUNDING = 1e-11  # of double precision over a few dozen operations
 

@@ -1,0 +1,133 @@
+"""Each usual mistake is undone and the pose fitted near the hand-measured one; the data tell which undoing fits best.
+
+What is compared is `1/2 chi^2` of the whitened residuals and of the hand measurement together, at its least: the
+paper's -log L with a Gaussian prior on the pose (its sigmas as given). Two mistakes may leave the same residuals (a
+flipped scan line, and a camera mounted the other way round); such ties are told.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from linepose.arrays import Floats
+from linepose.check.conventions.mistakes import AS_GIVEN, Mistake, usual_mistakes
+from linepose.check.conventions.recording import Recording
+from linepose.errors import EstimationError, InputError
+from linepose.estimation.wide_search import whitened_residuals
+from linepose.geometry import rotations
+from linepose.geometry.distance import pose_difference
+from linepose.likelihood.base import Likelihood
+from linepose.likelihood.published import PublishedLikelihood
+
+ALIKE: Final = 3.0  # in -log: odds of 20, below which two explanations are not told apart
+CONVINCING: Final = 10.0  # in -log: odds of 22,000, above which a mistake is believed
+_MAXIMUM_STEPS: Final = 40
+_TOLERANCE: Final = 1e-4
+
+RecordingAt = Callable[[float], Recording]
+
+
+@dataclass(frozen=True)
+class HandSigmas:
+    """One standard deviation of the hand-measured position (m) and of a turn about each axis (rad)."""
+
+    position_m: float
+    angle_rad: float
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """How well the data fit with one mistake undone: -log of likelihood and prior, mean reprojection error, pose (6,).
+
+    Infinite, and NaN, where there is no fit at all.
+    """
+
+    mistake: Mistake
+    neg_log_posterior: float
+    mean_error_px: float
+    pose: Floats
+
+
+@dataclass(frozen=True)
+class Examination:
+    """Every explanation, the best first, and the data as they were given."""
+
+    explanations: tuple[Explanation, ...]
+    as_given: Explanation
+
+    @property
+    def best(self) -> tuple[Explanation, ...]:
+        """What explains the data: the best, and all that the data cannot tell from it.
+
+        The data as given alone, where nothing explains them convincingly better.
+        """
+        lowest = self.explanations[0].neg_log_posterior
+        if not lowest < self.as_given.neg_log_posterior - CONVINCING:
+            return (self.as_given,)
+        return tuple(one for one in self.explanations if one.neg_log_posterior < lowest + ALIKE)
+
+    @property
+    def is_mistaken(self) -> bool:
+        """Whether a mistake explains the data convincingly better than taking them as given."""
+        return self.best[0] is not self.as_given
+
+    def in_words(self) -> str:
+        """One line a reader can act on."""
+        first = self.best[0]
+        if not self.is_mistaken:
+            return f"the data fit the hand-measured pose to {first.mean_error_px:.1f} px; no usual mistake fits better"
+        given = self.as_given.mean_error_px
+        before = f"{given:.0f} px" if np.isfinite(given) else "no fit at all"
+        words = f"{first.mistake.name}: {first.mean_error_px:.1f} px with that undone, {before} as given; "
+        words += first.mistake.remedy
+        for other in self.best[1:]:
+            words += f". It may as well be that {other.mistake.name}; then {other.mistake.remedy}"
+        return words
+
+
+def examine(recording_at: RecordingAt, sigmas: HandSigmas, mistakes: Sequence[Mistake] | None = None) -> Examination:
+    """Try every mistake on a recording.
+
+    `recording_at` gives the recording with the camera's clock moved by so many seconds, and raises InputError where
+    that leads outside the log or cannot be done.
+    """
+    as_given = explain(AS_GIVEN, recording_at, sigmas)
+    tried = [explain(mistake, recording_at, sigmas) for mistake in mistakes or usual_mistakes()]
+    ranked = sorted([as_given, *tried], key=lambda one: one.neg_log_posterior)
+    return Examination(tuple(ranked), as_given)
+
+
+def explain(mistake: Mistake, recording_at: RecordingAt, sigmas: HandSigmas) -> Explanation:
+    """The best fit near the hand-measured pose with this mistake undone."""
+    try:
+        recording = mistake.undo(recording_at(mistake.clock_shift_s))
+        likelihood = PublishedLikelihood(recording.survey, recording.camera)
+        pose, value = _fit(likelihood, recording.pose, sigmas)
+        if not np.isfinite(likelihood.log_likelihood(pose)):  # residuals alone do not tell in front from behind
+            raise EstimationError("a point lies behind the camera")
+        error_px = float(np.nanmean(likelihood.residuals(pose).error_px))
+    except (InputError, EstimationError):
+        return Explanation(mistake, np.inf, np.nan, np.full(6, np.nan))
+    return Explanation(mistake, value, error_px, pose)
+
+
+def _fit(likelihood: Likelihood, hand: Floats, sigmas: HandSigmas) -> tuple[Floats, float]:
+    """The best pose (6,) near the hand-measured one, and half the sum of squares there."""
+    scale = np.repeat([sigmas.position_m, sigmas.angle_rad], 3)
+
+    def residuals(step: Floats) -> Floats:
+        pose = _moved(hand, step * scale)
+        return np.concatenate([whitened_residuals(likelihood, pose), pose_difference(pose, hand) / scale])
+
+    found = least_squares(residuals, np.zeros(len(scale)), max_nfev=_MAXIMUM_STEPS, ftol=_TOLERANCE, xtol=_TOLERANCE)
+    return _moved(hand, found.x * scale), float(found.cost)
+
+
+def _moved(pose: Floats, step: Floats) -> Floats:
+    """A pose (6,) moved (m) and turned by a small rotation (rad)."""
+    turn = rotations.matrix_from_rotation_vector(step[3:])
+    matrix = turn @ rotations.matrix_from_rotation_vector(pose[3:])
+    return np.concatenate([pose[:3] + step[:3], rotations.rotation_vector_from_matrix(matrix)])

@@ -1,0 +1,198 @@
+"""The labelling window: a scan, the points placed in it, a sketch of the board that shows which point is next."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.backend_bases import Event, KeyEvent, MouseButton, MouseEvent
+from matplotlib.figure import Figure
+
+from linepose.arrays import Floats
+from linepose.cli.labelling.session import Session
+from linepose.inputs.scans.scan_files import Intensity
+from linepose.inputs.targets.refine import Refine
+from linepose.survey.pattern import CORNER_MARK_CENTRE_M, N_POINTS, SHEET_M, board_points
+
+_HELP: Final = (
+    "left click: place    right click or u: undo    x: skip a hidden point    n, b: next scan, one back    "
+    "click the board: that point\n"
+    "d: snap to the dot on, off    mouse wheel or toolbar: zoom    r: whole scan    q: close; all is saved at once"
+)
+_CONTRAST_PERCENT: Final = (1.0, 99.5)
+_ZOOM: Final = 1.4
+_PLACED, _NEXT = "#ffb000", "#dc267f"
+
+
+class LabelWindow:
+    """A figure in which the points of each scan are clicked in their order; every change is saved at once.
+
+    `scans` are the scan files by observation, `read` gives a scan's intensities, `refine` the centre of the dot near a
+    click, and `save` keeps the session.
+    """
+
+    def __init__(
+        self,
+        figure: Figure,
+        session: Session,
+        scans: Mapping[int, Path],
+        read: Callable[[Path], Intensity],
+        refine: Refine,
+        save: Callable[[Session], None],
+    ) -> None:
+        self.figure, self.session, self.scans = figure, session, scans
+        self._read, self._refine, self._save = read, refine, save
+        self.snaps, self.message = True, ""
+        grid = figure.add_gridspec(1, 2, width_ratios=(4, 1), left=0.06, right=0.98, top=0.92, bottom=0.14)
+        self.axes, self._board = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
+        figure.text(0.06, 0.02, _HELP, fontsize=9, color="0.35")
+        figure.canvas.mpl_connect("button_press_event", self._pressed)
+        figure.canvas.mpl_connect("key_press_event", self._typed)
+        figure.canvas.mpl_connect("scroll_event", self._scrolled)
+        self._marks: list[Any] = []
+        self._show_scan()
+
+    def _pressed(self, event: Event) -> None:
+        if not isinstance(event, MouseEvent) or event.dblclick or self._toolbar_acts():
+            return
+        if event.inaxes is self._board:
+            self._choose(event)
+        elif event.inaxes is not self.axes:
+            return
+        elif event.button == MouseButton.RIGHT:
+            self._undo()
+        elif event.button == MouseButton.LEFT and event.xdata is not None and event.ydata is not None:
+            self._place(float(event.xdata), float(event.ydata))
+
+    def _typed(self, event: Event) -> None:
+        actions = {
+            "u": self._undo,
+            "x": self._skip,
+            "n": lambda: self._turn(1),
+            "b": lambda: self._turn(-1),
+            "d": self._switch_snapping,
+        }
+        if isinstance(event, KeyEvent) and event.key in actions:
+            actions[event.key]()
+
+    def _scrolled(self, event: Event) -> None:
+        if not isinstance(event, MouseEvent) or event.inaxes is not self.axes:
+            return
+        factor = 1 / _ZOOM if event.button == "up" else _ZOOM
+        for centre, limits, change in (
+            (event.xdata, self.axes.get_xlim(), self.axes.set_xlim),
+            (event.ydata, self.axes.get_ylim(), self.axes.set_ylim),
+        ):
+            if centre is not None:
+                change(*(centre + factor * (limit - centre) for limit in limits))
+        self.figure.canvas.draw_idle()
+
+    def _toolbar_acts(self) -> bool:
+        """Whether the toolbar's zoom or pan takes the clicks."""
+        toolbar = getattr(self.figure.canvas, "toolbar", None)
+        return bool(toolbar is not None and str(getattr(toolbar, "mode", "")))
+
+    def _choose(self, event: MouseEvent) -> None:
+        """Make the point of the sketch that was clicked the next one, to place it anew."""
+        apart = np.hypot(*(_sketch() - [event.xdata, event.ydata]).T)
+        self.session.point, self.message = int(apart.argmin()), ""
+        self._draw()
+
+    def _place(self, u_px: float, line: float) -> None:
+        n_lines, n_pixels = self._intensity.shape
+        if not (-0.5 <= u_px <= n_pixels - 0.5 and -0.5 <= line <= n_lines - 0.5):
+            return
+        found = self._refine(self._intensity, u_px, line) if self.snaps else None
+        self.message = "no dot near there: the point is where you clicked" if self.snaps and found is None else ""
+        self.session.place(*(found or (u_px, line)))
+        self._changed()
+
+    def _skip(self) -> None:
+        self.message = ""
+        self.session.skip()
+        self._changed()
+
+    def _undo(self) -> None:
+        before, self.message = self.session.observation, ""
+        self.session.undo()
+        self._changed(other_scan=self.session.observation != before)
+
+    def _turn(self, step: int) -> None:
+        self.message = ""
+        self.session.turn(step)
+        self._show_scan()
+
+    def _switch_snapping(self) -> None:
+        self.snaps, self.message = not self.snaps, ""
+        self._draw()
+
+    def _changed(self, other_scan: bool = False) -> None:
+        self._save(self.session)
+        if other_scan:
+            self._show_scan()
+        else:
+            self._draw()
+
+    def _show_scan(self) -> None:
+        self._intensity = self._read(self.scans[self.session.observation])
+        low, high = np.percentile(self._intensity, _CONTRAST_PERCENT)
+        self.axes.clear()
+        self._marks = []
+        self.axes.imshow(
+            self._intensity, cmap="gray", vmin=low, vmax=max(high, low + 1e-6), aspect="auto", interpolation="nearest"
+        )
+        self.axes.set_xlabel("pixel")
+        self.axes.set_ylabel("scan line")
+        self._keep_home()
+        self._draw()
+
+    def _keep_home(self) -> None:
+        """Let the toolbar's home button show the whole of the scan that is now in view."""
+        toolbar = getattr(self.figure.canvas, "toolbar", None)
+        if toolbar is not None:
+            toolbar.update()
+            toolbar.push_current()
+
+    def _draw(self) -> None:
+        for mark in self._marks:
+            mark.remove()
+        self._marks = []
+        for point, (u_px, line) in sorted(self.session.here().items()):
+            self._marks += self.axes.plot(u_px, line, "+", color=_PLACED, markersize=11, markeredgewidth=1.2)
+            self._marks.append(
+                self.axes.annotate(
+                    str(point), (u_px, line), xytext=(6, 6), textcoords="offset points", color=_PLACED, fontsize=10
+                )
+            )
+        self.axes.set_title(self._title(), loc="left", fontsize=11)
+        self._draw_board()
+        self.figure.canvas.draw_idle()
+
+    def _title(self) -> str:
+        session = self.session
+        place = f"scan {session.numbers.index(session.observation) + 1} of {len(session.numbers)}"
+        name = self.scans[session.observation].name
+        task = f"click point {session.point}" if session.point < N_POINTS else "all points done: n for the next scan"
+        snapping = "" if self.snaps else "    (not snapping)"
+        return f"{name}, {place}    {task}{snapping}" + (f"\n{self.message}" if self.message else "")
+
+    def _draw_board(self) -> None:
+        """The board as seen from its front, so that the corner mark tells which way round the scan is."""
+        axes, here = self._board, self.session.here()
+        axes.clear()
+        axes.plot(-CORNER_MARK_CENTRE_M[1], CORNER_MARK_CENTRE_M[0], "s", color="0.2", markersize=9)
+        for point, (x, y) in enumerate(_sketch()):
+            colour = _NEXT if point == self.session.point else _PLACED if point in here else "0.75"
+            axes.plot(x, y, "o", color=colour, markersize=15)
+            axes.annotate(str(point), (x, y), ha="center", va="center", fontsize=8)
+        axes.set_xlim(-SHEET_M[1] / 2, SHEET_M[1] / 2)
+        axes.set_ylim(SHEET_M[0] / 2, -SHEET_M[0] / 2)
+        axes.set_aspect("equal")
+        axes.set_xticks([])
+        axes.set_yticks([])
+        axes.set_title("board from its front\n(scans may mirror it)", fontsize=9)
+
+
+def _sketch() -> Floats:
+    """Places (15, 2) of the points in the sketch: the board turned upright, to fit beside the scan."""
+    return board_points()[:, [1, 0]] * [-1.0, 1.0]

@@ -1,0 +1,1 @@
+"""What serves every noise model: optimisers, outlier removal, sampling, diagnostics."""

@@ -1,1 +1,0 @@
-"""Pattern points in scans: reading, refining and finding them."""

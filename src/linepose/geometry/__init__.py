@@ -1,0 +1,1 @@
+"""Rotations, poses, cameras, planes and distances: pure functions of arrays."""

@@ -1,0 +1,100 @@
+"""Labelled views: CSV files, one a view of the pattern, each row a point with its pixel, time and body pose."""
+
+import logging
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from linepose.errors import InputError
+from linepose.inputs.number_files import check_microseconds, read_numbers
+from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
+
+_COLUMNS: Final = ("time_us", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS)
+_WHAT: Final = "time (us), point, u (px), north, east, down (m), roll, pitch, yaw (rad)"
+
+log = logging.getLogger(__name__)
+
+
+def select_views(folder: Path, pattern: str, first: int, step: int) -> list[Path]:
+    """View files that match the pattern, sorted by name, every `step`-th from the `first` (counted from 1).
+
+    Raises InputError where that leaves none.
+    """
+    found = sorted(folder.glob(pattern))
+    paths = found[first - 1 :: step]
+    if not paths:
+        remedy = "correct source.views and source.first, or put the files there"
+        raise InputError(str(folder / pattern), f"{len(found)} files", "one file a view", remedy)
+    return paths
+
+
+def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
+    """All points of all views, the views numbered from 1 in the given order; a point whose u is NaN is left out.
+
+    Columns: observation, point, time_us, u_px, north_m, east_m, down_m, roll_rad, pitch_rad, yaw_rad.
+    Raises InputError naming file, row and remedy for whatever cannot be used.
+    """
+    views = []
+    last_us = np.int64(0)
+    for number, path in enumerate(paths, start=1):
+        view = _read_view(path, n_pixels)
+        if view["time_us"].iloc[0] <= last_us:
+            raise InputError(
+                f"{path}, row {view.index[0] + 1}, column 1",
+                f"time {view['time_us'].iloc[0]}",
+                f"a time after the view before it ({last_us})",
+                "name the files so that their order is that of time",
+            )
+        last_us = view["time_us"].max()
+        views.append(view.sort_values("point").assign(observation=number))
+    return pd.concat(views, ignore_index=True)[["observation", "point", "time_us", "u_px", *_COLUMNS[3:]]]
+
+
+def _read_view(path: Path, n_pixels: int) -> pd.DataFrame:
+    """Points of one view, ordered by time; the index counts the file's rows from 0."""
+    time_us, numbers = read_numbers(path, len(_COLUMNS), _WHAT)
+    check_microseconds(time_us, path)
+    view = pd.DataFrame(numbers, columns=list(_COLUMNS[1:])).assign(time_us=time_us)
+    labelled = ~np.isnan(view["u_px"].to_numpy())
+    if not labelled.all():
+        missing = ", ".join(f"{point:g}" for point in view["point"][~labelled])
+        log.warning("%s: no label for point %s: left out", path, missing)
+    for row in np.flatnonzero(labelled):
+        _check_row(view.iloc[row], f"{path}, row {row + 1}", n_pixels)
+    view = view[labelled].astype({"point": np.int64})
+    repeated = np.flatnonzero(view["point"].duplicated())
+    if repeated.size:
+        again = int(np.flatnonzero(labelled)[repeated[0]])
+        point = int(view["point"].iloc[repeated[0]])
+        raise InputError(
+            f"{path}, row {again + 1}, column 2",
+            f"point {point} again",
+            "each point once a view",
+            "remove one of the rows",
+        )
+    if view.empty:
+        raise InputError(str(path), "no labelled point", "at least one", "leave the file out")
+    return view.sort_values("time_us")
+
+
+def _check_row(row: pd.Series, place: str, n_pixels: int) -> None:
+    if not np.all(np.isfinite(row.to_numpy(dtype=float))):
+        name = row.index[~np.isfinite(row.to_numpy(dtype=float))][0]
+        raise InputError(f"{place}, {name}", "no number", "a number in each cell of a labelled point", "mend the cell")
+    if row["point"] < 0 or row["point"] != int(row["point"]):
+        raise InputError(
+            f"{place}, column 2", f"point {row['point']:g}", "a whole number from 0", "correct the point id"
+        )
+    if not -0.5 <= row["u_px"] <= n_pixels - 0.5:
+        raise InputError(
+            f"{place}, column 3",
+            f"pixel {row['u_px']:g}",
+            f"a pixel of the sensor, -0.5 to {n_pixels - 0.5:g}",
+            "correct the label, or camera.n_pixels",
+        )
+    angles = row[list(EULER_COLUMNS)].to_numpy(dtype=float)
+    if np.any(np.abs(angles) > 2 * np.pi):
+        raise InputError(f"{place}, columns 7-9", f"angles {angles.tolist()}", "radians", "convert degrees to radians")

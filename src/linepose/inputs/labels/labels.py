@@ -1,0 +1,65 @@
+"""Approximate labels: where on which scan a person saw which point."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from linepose.errors import InputError
+from linepose.inputs.scans.scan_files import Scan
+from linepose.survey.pattern import N_POINTS
+
+_COLUMNS: Final = ("observation", "point", "u_px", "line")
+
+
+def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
+    """Labels of a CSV file with the heading observation, point, u_px, line, ordered by observation and point.
+
+    `numbers` are the observations that there are scans of. Raises InputError naming the row of a label that has no
+    scan, no such point, no number, or is given twice.
+    """
+    if not path.is_file():
+        raise InputError(str(path), "no such file", "approximate labels", "restore it, or set source.points: detection")
+    try:
+        table = pd.read_csv(path)
+    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
+        found = " ".join(str(error).split())
+        raise InputError(str(path), found, "CSV with a heading", "mend the file") from None
+    missing = [name for name in _COLUMNS if name not in table]
+    if missing:
+        expected = f"columns {', '.join(_COLUMNS)}"
+        raise InputError(str(path), f"no column {', '.join(missing)}", expected, "name the columns so")
+    table = table[list(_COLUMNS)]
+    values = table.apply(pd.to_numeric, errors="coerce")
+    for row, column in np.argwhere(~np.isfinite(values.to_numpy(dtype=float)))[:1]:
+        place = f"{path}, row {row + 2}, {_COLUMNS[column]}"
+        raise InputError(place, repr(table.iloc[row, column]), "a number", "mend the cell")
+    _check_each(values["observation"], set(numbers), "observation", "the observations with a scan", path)
+    _check_each(values["point"], set(range(N_POINTS)), "point", f"0 to {N_POINTS - 1}", path)
+    for row in np.flatnonzero(values.duplicated(["observation", "point"]))[:1]:
+        found = f"point {values['point'].iloc[row]:g} of observation {values['observation'].iloc[row]:g} again"
+        raise InputError(f"{path}, row {row + 2}", found, "each point once a scan", "remove one of the rows")
+    labels = values.astype({"observation": np.int64, "point": np.int64, "u_px": float, "line": float})
+    return labels.sort_values(["observation", "point"], ignore_index=True)
+
+
+def _check_each(values: pd.Series, known: set[int], column: str, expected: str, path: Path) -> None:
+    for row in np.flatnonzero(~values.isin(known).to_numpy())[:1]:
+        place = f"{path}, row {row + 2}, {column}"
+        raise InputError(place, f"{values.iloc[row]:g}", expected, "correct or remove the label")
+
+
+def check_within(labels: pd.DataFrame, scan: Scan, place: str) -> None:
+    """Raise InputError naming the first of one scan's labels that lies outside its image."""
+    n_lines, n_pixels = scan.intensity.shape
+    inside = labels["u_px"].between(-0.5, n_pixels - 0.5) & labels["line"].between(-0.5, n_lines - 0.5)
+    for row in np.flatnonzero(~inside.to_numpy())[:1]:
+        label = labels.iloc[row]
+        raise InputError(
+            f"{place}: label of observation {label['observation']:g}, point {label['point']:g}",
+            f"pixel {label['u_px']:g}, line {label['line']:g}",
+            f"a place within the scan's {n_pixels} pixels and {n_lines} lines",
+            "correct or remove the label",
+        )

@@ -1,0 +1,132 @@
+"""From latitude, longitude and ellipsoidal height (WGS 84) to north, east, down in metres, and back.
+
+Two frames: the plane that touches the ellipsoid at an origin (lengths and angles are true, for surveys of a few
+kilometres), or a projected CRS such as UTM (the map's own coordinates; lengths differ by up to 0.04 %, and north is the
+grid's, so that headings are turned by the meridian convergence).
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pyproj import CRS, Proj, Transformer
+from pyproj.exceptions import CRSError, ProjError
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+from linepose.geometry import rotations
+from linepose.inputs.axes import NED_FROM_ENU
+
+GEODETIC: Final = "EPSG:4979"  # WGS 84: latitude, longitude (deg), ellipsoidal height (m)
+
+
+@dataclass(frozen=True)
+class LocalFrame:
+    """What north, east, down are measured in: a projected `crs`, or the tangent plane at `origin`.
+
+    `origin` is latitude, longitude (deg) and ellipsoidal height (m), None for a projected CRS.
+    """
+
+    crs: str
+    origin: tuple[float, float, float] | None
+
+
+def tangent_frame(origin: tuple[float, float, float]) -> LocalFrame:
+    """North, east, down from an origin at latitude, longitude (deg) and height (m)."""
+    return LocalFrame(GEODETIC, origin)
+
+
+def projected_frame(crs: str) -> LocalFrame:
+    """Northing, easting and minus the height of a projected CRS ("EPSG:32633"); raises InputError for any other."""
+    try:
+        projected = CRS.from_user_input(crs).is_projected
+    except CRSError:
+        projected = False
+    if not projected:
+        place, expected = "source.navigation.crs", "a projected CRS, for example EPSG:32633"
+        raise InputError(place, repr(crs), expected, "correct or remove the key")
+    return LocalFrame(crs, None)
+
+
+def utm_crs(latitude_deg: float, longitude_deg: float) -> str:
+    """EPSG code of the UTM zone (WGS 84) by longitude alone."""
+    zone = int((longitude_deg + 180.0) % 360.0 // 6.0) + 1
+    return f"EPSG:{(32600 if latitude_deg >= 0 else 32700) + zone}"
+
+
+def local_from_geodetic(frame: LocalFrame, geodetic: ArrayLike) -> tuple[Floats, Floats]:
+    """Positions (K, 3) north, east, down (m), and turns (K, 3, 3), of latitude, longitude (deg), height (m) (K, 3).
+
+    A turn takes vectors from true north, east, down at the point to the axes of the frame.
+    """
+    latitude, longitude, height = np.asarray(geodetic, dtype=float).T
+    if frame.origin is None:
+        east, north = _to_projected(frame.crs).transform(longitude, latitude)
+        convergence = np.deg2rad(_projection(frame.crs).get_factors(longitude, latitude).meridian_convergence)
+        about_down = np.stack([np.zeros_like(height), np.zeros_like(height), -convergence], axis=-1)
+        return np.stack([north, east, -height], axis=-1), rotations.matrix_from_euler(about_down)
+    enu = np.stack(_topocentric(frame.origin).transform(longitude, latitude, height), axis=-1)
+    return enu @ NED_FROM_ENU.T, _ecef_from_ned(frame.origin[0], frame.origin[1]).T @ _ecef_from_ned(
+        latitude, longitude
+    )
+
+
+def geodetic_from_local(frame: LocalFrame, position_m: ArrayLike) -> Floats:
+    """Latitude, longitude (deg), ellipsoidal height (m) of positions north, east, down (m); (K, 3) to (K, 3)."""
+    position = np.asarray(position_m, dtype=float)
+    if frame.origin is None:
+        longitude, latitude = _to_projected(frame.crs).transform(position[:, 1], position[:, 0], direction="INVERSE")
+        return np.stack([latitude, longitude, -position[:, 2]], axis=-1)
+    enu = position @ NED_FROM_ENU
+    east, north, up = enu.T
+    longitude, latitude, height = _topocentric(frame.origin).transform(east, north, up, direction="INVERSE")
+    return np.stack([latitude, longitude, height], axis=-1)
+
+
+def check_geodetic(geodetic: Floats, place: str) -> None:
+    """Raise InputError naming the first row of (K, 3) that is no latitude, longitude (deg) and height (m)."""
+    wrong = np.flatnonzero(
+        ~np.all(np.isfinite(geodetic), axis=1) | (np.abs(geodetic[:, 0]) > 90) | (np.abs(geodetic[:, 1]) > 360)
+    )
+    if wrong.size:
+        latitude, longitude, height = geodetic[wrong[0]]
+        raise InputError(
+            f"{place}, record {wrong[0] + 1}",
+            f"latitude {latitude:g}, longitude {longitude:g} deg, height {height:g} m",
+            "a place on Earth",
+            "check the columns and their unit, or remove the record",
+        )
+
+
+def _ecef_from_ned(latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> Floats:
+    """Matrices (..., 3, 3) whose columns are north, east and down in Earth-fixed axes."""
+    latitude, longitude = np.deg2rad(latitude_deg), np.deg2rad(longitude_deg)
+    sin_lat, cos_lat, sin_lon, cos_lon = np.sin(latitude), np.cos(latitude), np.sin(longitude), np.cos(longitude)
+    north = np.stack([-sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat], axis=-1)
+    east = np.stack([-sin_lon, cos_lon, np.zeros_like(sin_lon)], axis=-1)
+    down = np.stack([-cos_lat * cos_lon, -cos_lat * sin_lon, -sin_lat], axis=-1)
+    return np.stack([north, east, down], axis=-1)
+
+
+@cache
+def _topocentric(origin: tuple[float, float, float]) -> Transformer:
+    latitude, longitude, height = origin
+    return Transformer.from_pipeline(
+        "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad +step +proj=cart +ellps=WGS84 "
+        f"+step +proj=topocentric +ellps=WGS84 +lat_0={latitude!r} +lon_0={longitude!r} +h_0={height!r}"
+    )
+
+
+@cache
+def _to_projected(crs: str) -> Transformer:
+    return Transformer.from_crs("EPSG:4326", crs, always_xy=True)
+
+
+@cache
+def _projection(crs: str) -> Proj:
+    try:
+        return Proj(crs)
+    except (CRSError, ProjError):
+        raise InputError("source.navigation.crs", repr(crs), "a projected CRS", "correct or remove the key") from None

@@ -1,0 +1,48 @@
+"""Resonon's location files (.lcf): rows of numbers, read alike for poses and for the time of a scan's first line."""
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linepose.arrays import Floats
+from linepose.config.navigation_formats import TimeScale
+from linepose.errors import InputError
+from linepose.inputs import gps_time
+
+_FEWEST_COLUMNS: Final = 7
+
+
+def location_unix_us(time_s: Floats, time_scale: TimeScale) -> NDArray[np.int64]:
+    """Unix times (us) of the first column."""
+    time_us = gps_time.microseconds(time_s, "s")
+    return gps_time.unix_from_gps(time_us) if time_scale == "gps" else time_us
+
+
+def location_rows(path: Path) -> Floats:
+    """The numbers of a location file (K, C); raises InputError naming the row that has others."""
+    rows: list[list[float]] = []
+    for number, line in enumerate(_lines(path), start=1):
+        try:
+            rows.append([float(word) for word in line.split()])
+        except ValueError:
+            raise InputError(f"{path}, row {number}", repr(line[:60]), "numbers apart by spaces", "mend it") from None
+        if len(rows[-1]) < _FEWEST_COLUMNS or len(rows[-1]) != len(rows[0]):
+            expected = (
+                f"{max(len(rows[0]), _FEWEST_COLUMNS)} columns: time, roll, pitch, heading, longitude, latitude, ..."
+            )
+            raise InputError(
+                f"{path}, row {number}", f"{len(rows[-1])} columns", expected, "remove the row if it was cut"
+            )
+    if not rows:
+        raise InputError(str(path), "an empty file", "a location file", "restore it")
+    return np.array(rows)
+
+
+def _lines(path: Path) -> list[str]:
+    try:
+        return path.read_text(encoding="utf-8").rstrip().splitlines()
+    except UnicodeDecodeError:
+        expected = "a location file (.lcf)"
+        raise InputError(str(path), "bytes that are no text", expected, "correct source.navigation.format") from None

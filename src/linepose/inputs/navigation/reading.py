@@ -1,0 +1,50 @@
+"""Reading a platform's navigation log, whatever format its file names."""
+
+from pathlib import Path
+
+from linepose.config.navigation_formats import NavigationFormatSection
+from linepose.config.source import ScansSection
+from linepose.errors import InputError
+from linepose.inputs import gps_time
+from linepose.inputs.navigation.record import NavigationRecord
+from linepose.inputs.navigation.registry import navigation_format
+from linepose.inputs.scans.line_times import first_time_us
+from linepose.survey.navigation import NavigationCovariances, read_covariances
+from linepose.survey.navigation_log import read_navigation_log
+
+
+def read_navigation(section: ScansSection | NavigationFormatSection | str, folder: Path) -> NavigationRecord:
+    """The navigation log of a data set's folder.
+
+    `section` is `source` of a platform file, or its `source.navigation`: the path of our own table, or the section of
+    a format. A log that does not say its GPS week takes that of the scans, which only `source` names. Raises InputError
+    naming the file, the place in it, what was found and what was expected.
+    """
+    navigation = section.navigation if isinstance(section, ScansSection) else section
+    if isinstance(navigation, str):
+        return NavigationRecord(read_navigation_log(folder / navigation), None)
+    if isinstance(section, ScansSection) and _lacks_week(navigation):
+        week = gps_time.week_at(first_time_us(section, folder))
+        navigation = navigation.model_copy(update={"gps_week": week})
+    record: NavigationRecord = navigation_format(navigation.format).read(navigation, folder)
+    return record
+
+
+def log_covariances(
+    record: NavigationRecord, source: ScansSection, attitude_columns: tuple[int, int, int], folder: Path
+) -> NavigationCovariances:
+    """The covariances of `source.covariances`, or where it is not given those of the log itself.
+
+    `attitude_columns` are navigation.covariance_columns, for the file. Raises InputError where there are none.
+    """
+    if source.covariances is not None:
+        return read_covariances(folder / source.covariances, attitude_columns)
+    if record.covariances is None:
+        found, expected = "nothing", "a file: the navigation log holds no covariances"
+        raise InputError("source.covariances", found, expected, "write the file, or log the covariances too")
+    return record.covariances
+
+
+def _lacks_week(navigation: NavigationFormatSection) -> bool:
+    counts_weeks = getattr(navigation, "time_scale", "gps_week") == "gps_week"
+    return counts_weeks and getattr(navigation, "gps_week", 0) is None

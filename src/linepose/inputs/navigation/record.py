@@ -1,0 +1,188 @@
+"""What every reader of a navigation log returns, and the way there from what the devices write."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linepose.arrays import Floats
+from linepose.config.navigation_formats import GeodeticSection
+from linepose.errors import InputError
+from linepose.inputs.axes import turned
+from linepose.inputs.local_frame import (
+    LocalFrame,
+    check_geodetic,
+    local_from_geodetic,
+    projected_frame,
+    tangent_frame,
+    utm_crs,
+)
+from linepose.survey.navigation import NavigationCovariances
+from linepose.survey.navigation_log import NavigationLog
+
+_FEWEST: Final = 2
+_EARLIEST_US, _LATEST_US = 315_964_800_000_000, 4_102_444_800_000_000  # 1980 to 2100
+
+
+@dataclass(frozen=True)
+class NavigationRecord:
+    """A navigation log in our frames and units.
+
+    `log`: body poses, position north, east, down (m), roll, pitch, yaw (rad), Unix time (us). `covariances`: of those,
+    or None where the log has none and a file of their own is needed. `crs` and `origin`: the projected CRS of north and
+    east ("EPSG:32633"), or "EPSG:4979" and the latitude, longitude (deg) and ellipsoidal height (m) from which north,
+    east, down are counted; both None where the log does not say.
+    """
+
+    log: NavigationLog
+    covariances: NavigationCovariances | None
+    crs: str | None = None
+    origin: tuple[float, float, float] | None = None
+
+    @property
+    def frame(self) -> LocalFrame | None:
+        """The frame that leads back to latitude and longitude, where it is known."""
+        return None if self.crs is None else LocalFrame(self.crs, self.origin)
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Poses of one file: time_us (K,), position (K, 3), euler_rad (K, 3) in north, east, down; `place` names the file.
+
+    `position` is north, east, down (m), or latitude, longitude (deg), ellipsoidal height (m).
+    """
+
+    time_us: NDArray[np.int64]
+    position: Floats
+    euler_rad: Floats
+    place: str
+
+
+@dataclass(frozen=True)
+class Covariances:
+    """Covariances (C, 6, 6) of north, east, down (m), roll, pitch, yaw (rad) at times (C,); C may be 0."""
+
+    time_us: NDArray[np.int64]
+    covariance: Floats
+    place: str
+
+
+def local_record(poses: Sequence[Poses], covariances: Sequence[Covariances]) -> NavigationRecord:
+    """The record of files with positions in metres; raises InputError naming a broken record."""
+    both = _joined_poses(poses)
+    log = NavigationLog(both.time_us, both.position, both.euler_rad)
+    return NavigationRecord(log, _joined_covariances(covariances))
+
+
+def geodetic_record(
+    poses: Sequence[Poses], covariances: Sequence[Covariances], section: GeodeticSection
+) -> NavigationRecord:
+    """The record of files with latitude, longitude, height, taken to the section's frame.
+
+    Angles and covariances, which are about true north at each place, are turned into the frame with the positions.
+    Raises InputError naming a broken record.
+    """
+    for one in poses:
+        check_geodetic(one.position, one.place)
+    both = _joined_poses(poses)
+    frame = _frame(section, both.position[0])
+    position, turn = local_from_geodetic(frame, both.position)
+    if not np.all(np.isfinite(position)):
+        place = f"{both.place}, record {np.flatnonzero(~np.all(np.isfinite(position), axis=1))[0] + 1}"
+        raise InputError(place, f"a place outside {frame.crs}", "one inside it", "correct source.navigation.crs")
+    zeros = np.zeros((len(position), 6, 6))
+    euler, _ = turned(zeros, turn, both.euler_rad)
+    at_poses = _joined_covariances(covariances)
+    if at_poses is not None:
+        row = nearest_rows(both.time_us, at_poses.time_us)
+        _, covariance = turned(at_poses.covariance, turn[row], both.euler_rad[row])
+        at_poses = NavigationCovariances(at_poses.time_us, covariance, at_poses.source)
+    log = NavigationLog(both.time_us, position, euler)
+    return NavigationRecord(log, at_poses, frame.crs, frame.origin)
+
+
+def _frame(section: GeodeticSection, first: Floats) -> LocalFrame:
+    """The frame that the keys name, of a log whose first place (3,) is this."""
+    latitude, longitude, height = (float(one) for one in first)
+    if section.frame == "projected":
+        return projected_frame(section.crs or utm_crs(latitude, longitude))
+    return tangent_frame(section.origin or (latitude, longitude, height))
+
+
+def nearest_rows(time_us: NDArray[np.int64], wanted_us: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Rows of increasing times (K,) that are nearest to others (C,); (C,)."""
+    after = np.searchsorted(time_us, wanted_us).clip(1, max(len(time_us) - 1, 1))
+    before = after - 1
+    after = after.clip(max=len(time_us) - 1)
+    return np.where(np.abs(time_us[after] - wanted_us) < np.abs(time_us[before] - wanted_us), after, before)
+
+
+def _joined_poses(parts: Sequence[Poses]) -> Poses:
+    for part in parts:
+        _check(part)
+    ordered = sorted(parts, key=lambda part: int(part.time_us[0]))
+    for before, after in pairwise(ordered):
+        if after.time_us[0] <= before.time_us[-1]:
+            raise InputError(
+                after.place,
+                f"a log that begins at {after.time_us[0]} us",
+                f"one that begins after the end of {before.place} ({before.time_us[-1]} us)",
+                "remove the log that is there twice",
+            )
+    joined = Poses(
+        np.concatenate([part.time_us for part in ordered]),
+        np.concatenate([part.position for part in ordered]),
+        np.concatenate([part.euler_rad for part in ordered]),
+        ordered[0].place,
+    )
+    if len(joined.time_us) < _FEWEST:
+        raise InputError(joined.place, f"{len(joined.time_us)} poses", "two or more", "restore the log")
+    return joined
+
+
+def _check(part: Poses) -> None:
+    if not len(part.time_us):
+        raise InputError(part.place, "no pose", "a log of poses", "restore the log")
+    values = np.hstack([part.position, part.euler_rad])
+    for row in np.flatnonzero(~np.all(np.isfinite(values), axis=1))[:1]:
+        raise InputError(f"{part.place}, record {row + 1}", "a value that is no number", "a pose", "remove the record")
+    for row in np.flatnonzero((part.time_us < _EARLIEST_US) | (part.time_us > _LATEST_US))[:1]:
+        raise InputError(
+            f"{part.place}, record {row + 1}",
+            f"time {part.time_us[row]} us since 1970",
+            "a time between 1980 and 2100",
+            "correct the time's unit, scale or week in source.navigation",
+        )
+    for row in np.flatnonzero(np.any(np.abs(part.euler_rad) > 2 * np.pi + 1e-9, axis=1))[:1]:
+        remedy = "correct the unit of the angles in source.navigation"
+        found = f"roll, pitch, yaw {', '.join(f'{one:g}' for one in part.euler_rad[row])} rad"
+        raise InputError(f"{part.place}, record {row + 1}", found, "at most a full turn", remedy)
+    check_increasing(part.time_us, part.place)
+
+
+def check_increasing(time_us: NDArray[np.int64], place: str) -> None:
+    """Raise InputError naming the first of times (K,) that is not after the one before it."""
+    for row in np.flatnonzero(np.diff(time_us) <= 0)[:1]:
+        raise InputError(
+            f"{place}, record {row + 2}",
+            f"time {time_us[row + 1]} us",
+            f"a time after the record before it ({time_us[row]} us)",
+            "sort the records by time and remove repeated ones",
+        )
+
+
+def _joined_covariances(parts: Sequence[Covariances]) -> NavigationCovariances | None:
+    filled = sorted((part for part in parts if len(part.time_us)), key=lambda part: int(part.time_us[0]))
+    if not filled:
+        return None
+    time_us = np.concatenate([part.time_us for part in filled])
+    covariance = np.concatenate([part.covariance for part in filled])
+    check_increasing(time_us, f"{filled[0].place}, covariances")
+    lowest = np.min(np.diagonal(covariance, axis1=1, axis2=2), axis=1)
+    for row in np.flatnonzero(~np.all(np.isfinite(covariance), axis=(1, 2)) | (lowest < 0))[:1]:
+        place, found = f"{filled[0].place}, covariance {row + 1}", "a variance that is negative or no number"
+        raise InputError(place, found, "36 finite numbers, variances at least 0", "remove the record")
+    return NavigationCovariances(time_us, covariance, ", ".join(dict.fromkeys(part.place for part in filled)))

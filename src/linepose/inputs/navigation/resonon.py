@@ -1,0 +1,31 @@
+"""Navigation format `resonon`: location files (.lcf) of Resonon's airborne systems, one beside each scan.
+
+Columns apart by spaces: time (s), roll, pitch, heading (rad), longitude, latitude (deg), height (m, WGS 84 ellipsoid),
+two of no use, 5 where the row may be used and 0 where not, and more that depend on the receiver. Resonon's roll is
+positive with the right wing up, the opposite of ours. The files hold no covariances.
+"""
+
+from pathlib import Path
+from typing import Final
+
+from linepose.config.navigation_formats import NavigationFormat, ResononSection, TimeScale
+from linepose.inputs.location_files import location_rows, location_unix_us
+from linepose.inputs.navigation.record import NavigationRecord, Poses, geodetic_record
+
+_USE_COLUMN: Final = 9
+
+
+def read(section: ResononSection, folder: Path) -> NavigationRecord:
+    """The record of all location files; raises InputError naming a row that is none."""
+    return geodetic_record([_poses(path, section.time_scale) for path in section.paths(folder)], [], section)
+
+
+FORMAT: Final = NavigationFormat("resonon", ResononSection, read)
+
+
+def _poses(path: Path, time_scale: TimeScale) -> Poses:
+    rows = location_rows(path)
+    if rows.shape[1] > _USE_COLUMN:
+        rows = rows[rows[:, _USE_COLUMN] != 0]
+    euler = rows[:, 1:4] * [-1.0, 1.0, 1.0]
+    return Poses(location_unix_us(rows[:, 0], time_scale), rows[:, [5, 4, 6]], euler, str(path))

@@ -1,0 +1,66 @@
+"""Navigation format `sbet`: Applanix's smoothed best estimate of trajectory and its RMS file (smrmsg).
+
+A record of the trajectory is 17 little-endian doubles: seconds of the GPS week, latitude, longitude (rad), ellipsoidal
+height (m), three velocities, roll, pitch, platform heading, wander angle (rad), three accelerations, three turn rates.
+The heading is counted from the wander frame; true heading = platform heading - wander angle. A record of the RMS file
+is 10 doubles: seconds of the week, north, east, down (m), three velocities, roll, pitch, heading (arc minutes).
+"""
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from linepose.arrays import Floats
+from linepose.config.navigation_formats import NavigationFormat, SbetSection
+from linepose.errors import InputError
+from linepose.inputs import axes, gps_time
+from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record
+
+_TRAJECTORY: Final = 17
+_RMS: Final = 10
+_ARC_MINUTE: Final = np.pi / 180 / 60
+
+
+def read(section: SbetSection, folder: Path) -> NavigationRecord:
+    """The record of the trajectory; raises InputError naming a file that is cut, or has another format."""
+    poses = [_poses(path, section.gps_week) for path in section.paths(folder)]
+    rms = section.model_copy(update={"file": section.rms}).paths(folder) if section.rms else []
+    covariances = [_covariances(path, section.gps_week) for path in rms]
+    return geodetic_record(poses, covariances, section)
+
+
+FORMAT: Final = NavigationFormat("sbet", SbetSection, read)
+
+
+def _poses(path: Path, week: int | None) -> Poses:
+    table = _records(path, _TRAJECTORY, "an SBET trajectory")
+    geodetic = np.hstack([np.rad2deg(table[:, 1:3]), table[:, 3:4]])
+    heading = table[:, 9] - table[:, 10]
+    euler = np.stack([table[:, 7], table[:, 8], (heading + np.pi) % (2 * np.pi) - np.pi], axis=-1)
+    return Poses(_unix(path, table, week), geodetic, euler, str(path))
+
+
+def _covariances(path: Path, week: int | None) -> Covariances:
+    table = _records(path, _RMS, "an RMS file (smrmsg)")
+    sigma = np.hstack([table[:, 1:4], table[:, 7:10] * _ARC_MINUTE])
+    return Covariances(_unix(path, table, week), axes.diagonal_covariance(sigma), str(path))
+
+
+def _unix(path: Path, table: Floats, week: int | None) -> np.ndarray:
+    return gps_time.unix_from_week_of_first(week, gps_time.microseconds(table[:, 0], "s"), str(path))
+
+
+def _records(path: Path, n_values: int, what: str) -> Floats:
+    """The records (K, n_values) of a file, mapped; what they hold is checked for the wrong format."""
+    size, record = path.stat().st_size, 8 * n_values
+    if not size or size % record:
+        found = f"{size} bytes, {size // record} whole records and {size % record} bytes more"
+        remedy = "restore the file: it was cut or is of another format"
+        raise InputError(str(path), found, f"{what}: a multiple of {record} bytes", remedy)
+    table: Floats = np.memmap(path, dtype="<f8", mode="r").reshape(-1, n_values)
+    time_s = table[:, 0]
+    for row in np.flatnonzero(~np.isfinite(time_s) | (time_s < 0) | (time_s > 2 * gps_time.WEEK_US / 1e6))[:1]:
+        found = f"{time_s[row]:g} as its time"
+        raise InputError(f"{path}, record {row + 1}", found, f"{what}: seconds of the GPS week", "check the format")
+    return table

@@ -1,0 +1,68 @@
+"""Headerless CSV files of numbers, as the field data have them; a fault is named with its row."""
+
+from pathlib import Path
+
+import numpy as np
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+
+
+def read_numbers(path: Path, n_columns: int, what: str) -> tuple[np.ndarray[tuple[int], np.dtype[np.int64]], Floats]:
+    """First column as whole numbers (R,) and the others as floats (R, n_columns - 1); empty cells become NaN.
+
+    Raises InputError for a file that is missing or empty, a row of another length, or a cell that is no number.
+    """
+    if not path.is_file():
+        raise InputError(str(path), "no such file", what, "restore it, or correct the platform file")
+    try:
+        lines = path.read_text(encoding="utf-8").rstrip().splitlines()
+    except UnicodeDecodeError:
+        raise InputError(str(path), "bytes that are not UTF-8", what, "save the file as UTF-8 text") from None
+    if not lines:
+        raise InputError(str(path), "an empty file", what, "restore it, or leave it out")
+    first = np.empty(len(lines), dtype=np.int64)
+    others = np.empty((len(lines), n_columns - 1))
+    for index, cells in enumerate(line.split(",") for line in lines):
+        place = f"{path}, row {index + 1}"
+        if len(cells) != n_columns:
+            raise InputError(place, f"{len(cells)} columns", f"{n_columns} columns ({what})", "mend the row")
+        try:
+            first[index] = int(cells[0])
+        except (ValueError, OverflowError):
+            remedy = "write the time as a whole number of microseconds"
+            raise InputError(f"{place}, column 1", repr(cells[0]), "a whole number", remedy) from None
+        for column, cell in enumerate(cells[1:], start=2):
+            try:
+                others[index, column - 2] = float(cell) if cell.strip() else np.nan
+            except ValueError:
+                raise InputError(f"{place}, column {column}", repr(cell), "a number", "mend the cell") from None
+    return first, others
+
+
+def check_microseconds(time_us: np.ndarray[tuple[int], np.dtype[np.int64]], path: Path, first_row: int = 1) -> None:
+    """Raise InputError where times are not microseconds since 1970 between 1980 and 2100.
+
+    `first_row` is the file's row that holds the first of them.
+    """
+    wrong = np.flatnonzero((time_us < 315_964_800_000_000) | (time_us > 4_102_444_800_000_000))
+    if wrong.size:
+        row, time = int(wrong[0]), int(time_us[wrong[0]])
+        guess = next(
+            (
+                f"they look like {unit}: multiply by {factor}"
+                for unit, factor, low, high in _OTHER_UNITS
+                if low < time < high
+            ),
+            "write microseconds since 1970",
+        )
+        raise InputError(
+            f"{path}, row {row + first_row}, column 1", f"time {time}", "microseconds since 1970-01-01", guess
+        )
+
+
+_OTHER_UNITS = (
+    ("seconds", 1_000_000, 315_964_800, 4_102_444_800),
+    ("milliseconds", 1_000, 315_964_800_000, 4_102_444_800_000),
+    ("nanoseconds", "0.001", 315_964_800_000_000_000, 4_102_444_800_000_000_000),
+)

@@ -1,0 +1,1 @@
+"""Scans and the time stamps of their lines, as cameras record them."""

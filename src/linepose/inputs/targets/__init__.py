@@ -1,0 +1,1 @@
+"""The board's points found in scans and refined."""

@@ -1,0 +1,49 @@
+"""The pose in JSON, with its covariance and the conventions in words: for code that reads all of it."""
+
+import json
+from pathlib import Path
+from typing import Any, Final
+
+from linepose.geometry.pose import POSE_COLUMNS
+from linepose.geometry.rotations import euler_from_rotation_vector
+from linepose.output.exports.calibration import Calibration
+from linepose.output.exports.numbers import plain
+from linepose.output.exports.options import AXES_IN_WORDS, ExportOptions
+from linepose.output.exports.words import CAMERA_AXES
+
+VERSION: Final = 1
+
+
+def write_json(calibration: Calibration, options: ExportOptions, path: Path) -> None:
+    """Write the pose as rotation vector, quaternion, Euler angles and matrix, with the rotation vector's covariance."""
+    path.write_text(json.dumps(_content(calibration, options), indent=2) + "\n", encoding="utf-8")
+
+
+def _content(calibration: Calibration, options: ExportOptions) -> dict[str, Any]:
+    pose = calibration.pose
+    return {
+        "format": "linepose pose",
+        "version": VERSION,
+        "platform": calibration.platform,
+        "stage": calibration.stage,
+        "n_observations": calibration.n_observations,
+        "noise_model": calibration.noise_model,
+        "parent_frame": options.parent_frame,
+        "child_frame": options.child_frame,
+        "conventions": {
+            "body_axes": AXES_IN_WORDS[calibration.body_axes],
+            "camera_axes": CAMERA_AXES,
+            "pose": "camera in the body: x_body = matrix x_camera, homogeneous",
+            "rotation_vector": "angle (rad) times unit axis, camera to body",
+            "euler": "roll, pitch, yaw (rad): R = Rz(yaw) Ry(pitch) Rx(roll), zyx intrinsic, xyz about fixed axes",
+            "covariance": f"of the parameters in their order, m and rad; from {calibration.covariance_from}",
+        },
+        "position_m": plain(pose[:3]),
+        "rotation_vector_rad": plain(pose[3:]),
+        "quaternion_wxyz": plain(calibration.quaternion()),
+        "euler_rad": plain(euler_from_rotation_vector(pose[3:])),
+        "matrix": [plain(row) for row in calibration.matrix()],
+        "parameters": list(POSE_COLUMNS),
+        "sigma": plain(calibration.sigma()),
+        "covariance": [plain(row) for row in calibration.covariance],
+    }

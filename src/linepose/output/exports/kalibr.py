@@ -1,0 +1,39 @@
+"""A camchain in the YAML that Kalibr writes and visual-inertial software reads.
+
+`T_cam_imu` takes body coordinates to camera coordinates, `x_cam = T_cam_imu x_body`: the inverse of linepose's pose.
+The line is an image of one row: the pinhole's fv and pv belong to a row of no height, and radtan's k1 and k2 act along
+the line as linepose's do.
+"""
+
+from pathlib import Path
+
+import yaml
+
+from linepose.config.platform import Platform
+from linepose.output.exports.calibration import Calibration
+from linepose.output.exports.numbers import plain
+from linepose.output.exports.words import explained
+
+
+def write_kalibr(calibration: Calibration, platform: Platform, path: Path) -> None:
+    """Write `cam0`: the transform, the intrinsics, and no time shift: the pose rests on the clocks as they are."""
+    camera = platform.intrinsics()
+    focal = camera.focal_length_px
+    chain = {
+        "cam0": {
+            "camera_model": "pinhole",
+            "intrinsics": plain([focal, focal, camera.principal_point_px, 0.0]),
+            "distortion_model": "radtan",
+            "distortion_coeffs": plain([camera.k1, camera.k2, 0.0, 0.0]),
+            "resolution": [camera.n_pixels, 1],
+            "rostopic": "/line_camera/image_raw",
+            "timeshift_cam_imu": 0.0,
+            "T_cam_imu": [plain(row) for row in calibration.inverse_matrix()],
+        }
+    }
+    comments = [
+        *explained(calibration),
+        "T_cam_imu takes body coordinates to camera coordinates: x_cam = T_cam_imu x_body.",
+    ]
+    head = "".join(f"# {line}\n" for line in comments)
+    path.write_text(head + yaml.safe_dump(chain, sort_keys=False, width=200, default_flow_style=None), encoding="utf-8")

@@ -1,0 +1,95 @@
+"""The mapped points of a finished calibration in easting, northing and height, with their covariances."""
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from linepose.config.platform import Platform
+from linepose.errors import InputError
+from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
+from linepose.experiments.schemas import MAPPING
+from linepose.inputs.local_frame import GEODETIC
+from linepose.output.exports.calibration import finished
+from linepose.output.exports.map_frame import MapFrame, projected_map, tangent_map
+from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS
+from linepose.pipeline.result_schemas import ESTIMATED_POINTS, MAP_FRAME
+from linepose.survey.observations import POSITION_COLUMNS
+from linepose.tables import read_table
+
+MAP_COLUMNS: Final = ("easting_m", "northing_m", "height_m")
+_SHORT: Final = ("easting", "northing", "height")
+_UPPER: Final = tuple((i, j) for i in range(3) for j in range(i, 3))
+MAP_COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_SHORT[i]}_{_SHORT[j]}_m2" for i, j in _UPPER)
+MAP_SIGMA_COLUMNS: Final = tuple(f"sigma_{name}" for name in MAP_COLUMNS)
+PROJECTED_POSES: Final = ("calibrated", "hand_measured")
+_STAGE: Final = "inliers"
+
+
+def frame_of(results: Path, platform: Platform, name: str) -> MapFrame:
+    """The map that a platform's points go to: what its file says, or its navigation log.
+
+    Raises InputError where neither says where the survey lies.
+    """
+    section, place = platform.map_frame, f"{name}.yaml: map_frame"
+    if section is not None and section.crs is not None:
+        return projected_map(section.crs, f"{place}.crs")
+    if section is not None and section.origin is not None:
+        return tangent_map(section.origin, f"{place}.origin")
+    of_log = results / name / "map_frame.parquet"
+    recorded = read_table(of_log, MAP_FRAME) if of_log.is_file() else None
+    if recorded is not None and len(recorded):
+        row = recorded.iloc[0]
+        if row["crs"] != GEODETIC:
+            return projected_map(row["crs"], f"{of_log}: crs")
+        return tangent_map((row["latitude_deg"], row["longitude_deg"], row["height_m"]), str(of_log))
+    raise InputError(
+        place,
+        "nothing",
+        "where on the Earth north, east and down are",
+        "add `map_frame: {crs: EPSG:...}` with their projected system, or its `origin` for local coordinates",
+    )
+
+
+def read_mapped_points(results: Path, name: str, stage: str, frame: MapFrame) -> dict[str, pd.DataFrame]:
+    """Layers of points below results/NAME: `estimated_points`, and `projected_POSE` for each pose of PROJECTED_POSES.
+
+    Columns: point, of projections the observation too, then easting, northing, height (m), the sigma of each, and
+    their covariances. Raises InputError where the mapping was not run, or another stage than the accepted is asked for.
+    """
+    if stage != _STAGE:
+        expected = f"{_STAGE}, whose pose points are mapped with"
+        raise InputError(f"stage of {name}", repr(stage), expected, "leave the stage out")
+    estimated = read_table(finished(results / name / "estimated_points.parquet", name), ESTIMATED_POINTS)
+    path = results / name / "mapping.parquet"
+    if not path.is_file():
+        raise InputError(
+            str(path),
+            "no such result",
+            "that of the mapping experiment",
+            f"run `linepose run {name}`, with `experiments.mapping` not null in its file",
+        )
+    projected = read_table(path, MAPPING).dropna()
+    estimated = estimated[estimated["stage"] == stage]
+    layers = {"estimated_points": _on_map(estimated, POSITION_COLUMNS, POINT_COVARIANCE_COLUMNS, frame)}
+    for pose in PROJECTED_POSES:
+        table = projected[projected["pose"] == pose]
+        layers[f"projected_{pose}"] = _on_map(table, PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS, frame)
+    return layers
+
+
+def _on_map(
+    table: pd.DataFrame, position_columns: tuple[str, ...], covariance_columns: tuple[str, ...], frame: MapFrame
+) -> pd.DataFrame:
+    names = [name for name in ("observation", "point") if name in table]
+    upper = table[list(covariance_columns)].to_numpy()
+    covariance = np.zeros((len(table), 3, 3))
+    for k, (i, j) in enumerate(_UPPER):
+        covariance[:, i, j] = covariance[:, j, i] = upper[:, k]
+    north_east_down = table[list(position_columns)].to_numpy()
+    place, on_map = frame.places(north_east_down), frame.covariances(north_east_down, covariance)
+    sigma = np.sqrt(np.maximum(np.diagonal(on_map, axis1=1, axis2=2), 0.0))
+    columns = dict(zip(MAP_COLUMNS, place.T, strict=True)) | dict(zip(MAP_SIGMA_COLUMNS, sigma.T, strict=True))
+    columns |= {key: on_map[:, i, j] for key, (i, j) in zip(MAP_COVARIANCE_COLUMNS, _UPPER, strict=True)}
+    return table[names].reset_index(drop=True).assign(**columns)

@@ -1,0 +1,42 @@
+"""A static transform for ROS 2: parameters in YAML, and above them the one line that publishes the same.
+
+The parameters are those of the component `tf2_ros::StaticTransformBroadcasterNode`, whose node name is random, so they
+are given for any node.
+"""
+
+import shlex
+from pathlib import Path
+
+import yaml
+
+from linepose.output.exports.calibration import Calibration
+from linepose.output.exports.numbers import plain
+from linepose.output.exports.options import ExportOptions
+from linepose.output.exports.words import explained
+
+_AXES = ("x", "y", "z")
+
+
+def write_ros2(calibration: Calibration, options: ExportOptions, path: Path) -> None:
+    """Write the parameter file, the launch line in its second comment."""
+    translation = dict(zip(_AXES, plain(calibration.pose[:3]), strict=True))
+    w, x, y, z = plain(calibration.quaternion())
+    rotation = {"x": x, "y": y, "z": z, "w": w}
+    parameters = {
+        "frame_id": options.parent_frame,
+        "child_frame_id": options.child_frame,
+        "translation": translation,
+        "rotation": rotation,
+    }
+    comments = [*explained(calibration), launch_line(options, translation, rotation)]
+    head = "".join(f"# {line}\n" for line in comments)
+    body = yaml.safe_dump({"/**": {"ros__parameters": parameters}}, sort_keys=False)
+    path.write_text(head + body, encoding="utf-8")
+
+
+def launch_line(options: ExportOptions, translation: dict[str, float], rotation: dict[str, float]) -> str:
+    """The command that publishes the transform without the file."""
+    moved = [item for axis, value in translation.items() for item in (f"--{axis}", repr(value))]
+    turned = [item for axis, value in rotation.items() for item in (f"--q{axis}", repr(value))]
+    frames = ["--frame-id", options.parent_frame, "--child-frame-id", options.child_frame]
+    return shlex.join(["ros2", "run", "tf2_ros", "static_transform_publisher", *moved, *turned, *frames])

@@ -1,0 +1,31 @@
+"""What the catalogue says of each figure."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from linepose.config.platform import Platform
+from linepose.output.figures.results import PlatformResults
+
+
+@dataclass(frozen=True)
+class CatalogueEntry:
+    """One figure: file stem, title, the paper's figure or nothing, what it shows, and how it is made.
+
+    `left_out` says in a sentence why a platform has none of it, and is empty where it should have one.
+    """
+
+    name: str
+    title: str
+    paper_figure: str
+    shows: str
+    draw: Callable[[PlatformResults], Figure]
+    caption: Callable[[PlatformResults], str]
+    left_out: Callable[[Platform], str] = lambda _: ""
+
+
+def without(key: str) -> Callable[[Platform], str]:
+    """Why a platform has no figure of the experiment of this key: it was not asked for."""
+    told = f"This experiment was not asked for: experiments.{key} is null in the platform's file."
+    return lambda platform: "" if getattr(platform.experiments, key) else told

@@ -1,0 +1,52 @@
+"""The figures of the noise models side by side, for the catalogue."""
+
+from typing import Final
+
+from linepose.experiments import schemas as schemas
+from linepose.output.figures import consistency, identifiability, noise_models, weights
+from linepose.output.figures.entry import CatalogueEntry, without
+
+NOISE_FIGURES: Final = (
+    CatalogueEntry(
+        "noise_models",
+        "Noise models side by side",
+        "",
+        "each pose parameter from every set of observations under each noise model, with bars of two sigmas",
+        lambda r: noise_models.noise_models(
+            r.table("noise_models", schemas.NOISE_MODELS), r.pose("hand_measured"), r.true_pose
+        ),
+        lambda r: noise_models.noise_models_caption(r.table("noise_models", schemas.NOISE_MODELS)),
+        without("noise_models"),
+    ),
+    CatalogueEntry(
+        "consistency",
+        "Agreement of disjoint observations",
+        "",
+        "cumulative distribution of the distance in sigmas between poses from disjoint observations, by noise model",
+        lambda r: consistency.consistency(r.table("consistency", schemas.CONSISTENCY)),
+        lambda r: consistency.consistency_caption(r.table("consistency_summary", schemas.CONSISTENCY_SUMMARY)),
+        without("noise_models"),
+    ),
+    CatalogueEntry(
+        "weights",
+        "Weights of the robust noise model",
+        "",
+        "bars of each view's weight above a matrix of each point's, observations across",
+        lambda r: weights.weights(r.table("weights", schemas.WEIGHTS)),
+        lambda r: weights.weights_caption(r.table("weights", schemas.WEIGHTS)),
+        without("noise_models"),
+    ),
+    CatalogueEntry(
+        "identifiability",
+        "What the data say of each parameter",
+        "",
+        "bars of posterior over prior sigma of each parameter, and intervals of the inferred levels on their priors",
+        lambda r: identifiability.identifiability(
+            r.table("identifiability", schemas.IDENTIFIABILITY), r.table("noise_models", schemas.NOISE_MODELS)
+        ),
+        lambda r: identifiability.identifiability_caption(
+            r.table("identifiability", schemas.IDENTIFIABILITY), r.table("noise_models", schemas.NOISE_MODELS)
+        ),
+        without("noise_models"),
+    ),
+)

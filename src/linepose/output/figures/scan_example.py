@@ -1,0 +1,102 @@
+"""The scans that figures show: a quick pass, one that the camera made the other way round, and a slow one."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from linepose.arrays import Floats
+from linepose.config.source import ScansSection
+from linepose.errors import InputError
+from linepose.inputs.observed_points import select_scans
+from linepose.inputs.scans.scan_files import Intensity, read_intensity
+from linepose.inputs.targets.board_in_scan import BoardInScan, fit_board
+from linepose.output.figures.checks import usable_rows
+from linepose.output.figures.results import PlatformResults
+from linepose.pipeline.result_schemas import SCAN_POINTS
+from linepose.survey.pattern import SHEET_M, board_points
+
+_FEWEST_POINTS: Final = 6
+_SLOW: Final = 2.5  # times as many lines as the quick pass
+_NOT_SLOW: Final = 1.5
+_MIRROR: Final = np.diag([1.0, -1.0])  # what the other way round does to pixels and lines
+
+
+@dataclass(frozen=True)
+class ScanExample:
+    """One observation's scan lines (L, P), the points found in it (point, u_px, line), and where the sheet lies."""
+
+    title: str
+    intensity: Intensity
+    points: pd.DataFrame
+    board: BoardInScan
+
+    def outline(self) -> Floats:
+        """The sheet's corners (5, 2), u and line, the first again at the end."""
+        corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
+        return self.board.position(corners * SHEET_M)
+
+
+def scan_examples(results: PlatformResults, table: str) -> list[ScanExample]:
+    """Up to three accepted observations with the points of a table such as `points`; at least one.
+
+    Raises InputError where the platform has no scans.
+    """
+    source, folder = results.platform.source, results.data_folder
+    if not isinstance(source, ScansSection) or folder is None:
+        raise InputError(results.name, "no scans", "scan images", "give source.scans in the platform's file")
+    points = usable_rows(
+        results.table(table, SCAN_POINTS), ("observation", "point", "u_px", "line"), f"{table}.parquet"
+    )
+    views = {number: points[points["observation"] == number] for number in results.accepted()}
+    boards = {number: board_of(view) for number, view in views.items() if len(view) >= _FEWEST_POINTS}
+    if not boards:
+        expected = f"an accepted observation with {_FEWEST_POINTS} points"
+        raise InputError(f"{table}.parquet", "none", expected, "label more points")
+    paths = select_scans(folder, source.scans, source.left_out)
+    return [
+        ScanExample(title, _intensity(paths[number]), views[number], boards[number])
+        for number, title in chosen(boards).items()
+    ]
+
+
+@lru_cache(maxsize=3)
+def _intensity(path: Path) -> Intensity:
+    """A scan's lines, read once for all figures."""
+    return read_intensity(path)
+
+
+def board_of(view: pd.DataFrame) -> BoardInScan:
+    """Where the board lies in a scan, from one observation's points."""
+    known = view[view["point"] < len(board_points())]
+    return fit_board(board_points()[known["point"], :2], known[["u_px", "line"]].to_numpy())
+
+
+def chosen(boards: Mapping[int, BoardInScan]) -> dict[int, str]:
+    """Titles of the examples by observation: the quickest, the one most like its mirror image, and a slow one."""
+    jacobian = {number: board.jacobian(np.zeros(2)) for number, board in boards.items()}
+    lines_per_m = {number: float(np.linalg.norm(matrix[1])) for number, matrix in jacobian.items()}
+    quick = min(boards, key=lines_per_m.__getitem__)
+
+    def slowness(number: int) -> float:
+        return lines_per_m[number] / lines_per_m[quick]
+
+    def unlike_mirror_image(number: int) -> float:
+        return float(np.linalg.norm(_MIRROR @ jacobian[number] - jacobian[quick]))
+
+    mirrored = {number: bool(np.linalg.det(matrix) < 0) for number, matrix in jacobian.items()}
+    turned = [number for number in boards if mirrored[number] != mirrored[quick]]
+    slow = [number for number in boards if slowness(number) > _NOT_SLOW]
+    numbers = [quick, *sorted(turned, key=unlike_mirror_image)[:1]]
+    slow = sorted(set(slow) - set(numbers), key=lambda number: abs(np.log(slowness(number) / _SLOW)))
+    ways = {number: _way(mirrored[number], number in slow) for number in [*numbers, *slow[:1]]}
+    return {number: f"Observation {number}\n{way}" for number, way in ways.items()}
+
+
+def _way(mirrored: bool, slow: bool) -> str:
+    words = [word for word, holds in (("mirrored", mirrored), ("slow", slow)) if holds]
+    return ", ".join(words) or "not mirrored"

@@ -1,0 +1,97 @@
+"""The report as one HTML file that needs no network: a page of Jinja2 templates filled from the results."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from linepose.output.report.pictures import Picture, embedded
+from linepose.output.report.sections import SectionOnPage
+from linepose.pipeline.pose_tables import PoseNumber
+from linepose.pipeline.summary import PlatformSummary
+from linepose.pipeline.verdict import Level
+
+_WORDS: Final = {Level.GOOD: "good", Level.CARE: "care", Level.BAD: "bad"}
+_SIGNS: Final = {Level.GOOD: "✓ passed", Level.CARE: "! look", Level.BAD: "✗ failed"}
+
+
+@dataclass(frozen=True)
+class FigureOnPage:
+    """One figure: its place on the page, texts, and its picture, or the sentence that stands in its place."""
+
+    anchor: str
+    title: str
+    paper_figure: str
+    caption: str
+    alt: str
+    picture: Picture | None
+    left_out: str
+
+
+@dataclass(frozen=True)
+class PlatformOnPage:
+    """One platform: its summary, the sections that stand between pose and figures, its figures and its settings."""
+
+    summary: PlatformSummary
+    sections: Sequence[SectionOnPage]
+    figures: Sequence[FigureOnPage]
+    settings: str
+
+
+def figures_on_page(name: str, folder: Path, index: pd.DataFrame) -> list[FigureOnPage]:
+    """Every figure of a platform's index, drawn ones with their pictures."""
+    return [
+        FigureOnPage(
+            anchor=f"{name}-{row['figure']}",
+            title=row["title"],
+            paper_figure=row["paper_figure"],
+            caption=row["caption"],
+            alt=row["alt"],
+            picture=None if row["left_out"] else embedded(folder / f"{row['figure']}.png"),
+            left_out=row["left_out"],
+        )
+        for _, row in index.iterrows()
+    ]
+
+
+def render_page(
+    platforms: Sequence[PlatformOnPage],
+    published: Sequence[SectionOnPage],
+    settings: str,
+    package_versions: Mapping[str, str],
+) -> str:
+    """The whole page."""
+    environment = Environment(
+        loader=PackageLoader("linepose.output.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "word": _WORDS.__getitem__,
+        "sign": _SIGNS.__getitem__,
+        "number": _number,
+        "brief": _brief,
+        "capital": lambda text: text[:1].upper() + text[1:],
+    }
+    return environment.get_template("report.html.j2").render(
+        platforms=platforms, published=published, settings=settings, versions=package_versions
+    )
+
+
+def _number(value: float, of: PoseNumber) -> str:
+    """A number to the digits that its unit deserves: tenths of millimetres, hundredths of degrees."""
+    return _rounded(value, 2 if of.unit == "°" else 4)
+
+
+def _brief(value: float, of: PoseNumber) -> str:
+    """A number to the digits that a glance needs: millimetres, tenths of degrees."""
+    return _rounded(value, 1 if of.unit == "°" else 3)
+
+
+def _rounded(value: float, digits: int) -> str:
+    return f"{round(value, digits) + 0.0:.{digits}f}"  # never -0.00

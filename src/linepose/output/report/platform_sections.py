@@ -1,0 +1,23 @@
+"""The sections of a platform's part of the page that stand between its pose and its figures, in their order."""
+
+from collections.abc import Callable
+from typing import Final
+
+from linepose.output.figures.results import PlatformResults
+from linepose.output.report.clocks import clocks_section
+from linepose.output.report.decided import decided_section
+from linepose.output.report.dependence import dependence_section
+from linepose.output.report.noise_models import noise_models_section
+from linepose.output.report.sections import SectionOnPage
+
+_SECTIONS: Final[tuple[Callable[[PlatformResults], SectionOnPage | None], ...]] = (
+    decided_section,
+    noise_models_section,
+    dependence_section,
+    clocks_section,
+)
+
+
+def platform_sections(results: PlatformResults) -> list[SectionOnPage]:
+    """Every section for which the platform has results."""
+    return [section for make in _SECTIONS if (section := make(results)) is not None]

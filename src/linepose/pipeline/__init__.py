@@ -1,0 +1,1 @@
+"""From a platform's files to its calibration, and how results are written and read."""

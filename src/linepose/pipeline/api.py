@@ -1,0 +1,148 @@
+"""The Python interface: a platform's observations or an engineer's own arrays in, a calibration out, no workflow."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from linepose.arrays import Floats
+from linepose.config.platform import Platform
+from linepose.config.project import Project
+from linepose.errors import InputError
+from linepose.pipeline.calibrate import CalibrationSettings, calibrate
+from linepose.pipeline.calibration import Calibration, HandMeasured
+from linepose.pipeline.load import read_observations
+from linepose.pipeline.project_folder import find_project, load_platform_project
+from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
+
+
+def observations_from_arrays(
+    observation: ArrayLike,
+    point: ArrayLike,
+    u_px: ArrayLike,
+    position_m: ArrayLike,
+    euler_rad: ArrayLike,
+    covariance: ArrayLike,
+) -> pd.DataFrame:
+    """The table of observations of K points seen, from arrays.
+
+    observation (K,): number of the view from 1; point (K,): number of the pattern point from 0; u_px (K,): pixel along
+    the scan line from 0; position_m (K, 3): the body's north, east, down when the point was recorded; euler_rad
+    (K, 3): its roll, pitch, yaw, zyx intrinsic; covariance (6, 6) or (K, 6, 6): of north, east, down, roll, pitch, yaw
+    (m, rad). Raises InputError naming the first array that does not fit.
+    """
+    pixels = np.atleast_1d(np.asarray(u_px, dtype=float))
+    count = len(pixels)
+    position = _shaped("position_m", position_m, (count, 3))
+    euler = _shaped("euler_rad", euler_rad, (count, 3))
+    if np.any(np.abs(euler) > 2 * np.pi):
+        largest = float(np.abs(euler).max())
+        raise InputError("euler_rad", f"an angle of {largest:g}", "radians", "convert degrees with numpy.radians")
+    matrices = np.asarray(covariance, dtype=float)
+    matrices = _shaped(
+        "covariance", np.broadcast_to(matrices, (count, 6, 6)) if matrices.ndim == 2 else matrices, (count, 6, 6)
+    )
+    _check_covariances(matrices)
+    columns: dict[str, Floats | np.ndarray] = {
+        "observation": _whole("observation", observation, count),
+        "point": _whole("point", point, count),
+        "time_us": np.zeros(count, dtype=np.int64),
+        "u_px": _shaped("u_px", pixels, (count,)),
+    }
+    columns |= dict(zip(POSITION_COLUMNS, position.T, strict=True))
+    columns |= dict(zip(EULER_COLUMNS, euler.T, strict=True))
+    columns |= {name: matrices[:, i, j] for name, (i, j) in zip(COVARIANCE_COLUMNS, COVARIANCE_INDICES, strict=True)}
+    table = pd.DataFrame(columns).assign(nav_gap_s=0.0)
+    twice = table.duplicated(["observation", "point"])
+    if twice.any():
+        row = int(np.flatnonzero(twice)[0])
+        found = f"point {table['point'].iloc[row]} of observation {table['observation'].iloc[row]} again in row {row}"
+        raise InputError("observations", found, "each point once a view", "remove one of the rows")
+    return table.sort_values(["observation", "point"], ignore_index=True)
+
+
+def _shaped(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Floats:
+    array = np.asarray(values, dtype=float)
+    if array.shape != shape:
+        raise InputError(name, f"shape {array.shape}", f"shape {shape}", "give one row a point seen, as in u_px")
+    if not np.all(np.isfinite(array)):
+        row = int(np.argwhere(~np.isfinite(array))[0][0])
+        raise InputError(f"{name}, row {row}", "no number", "finite numbers", "leave out points that were not seen")
+    return array
+
+
+def _whole(name: str, values: ArrayLike, count: int) -> np.ndarray:
+    array = _shaped(name, values, (count,))
+    wrong = np.flatnonzero((array != np.rint(array)) | (array < 0))
+    if wrong.size:
+        row = int(wrong[0])
+        raise InputError(f"{name}, row {row}", f"{array[row]:g}", "a whole number", "number views and points")
+    return array.astype(np.int64)
+
+
+def _check_covariances(matrices: Floats) -> None:
+    scale = np.sqrt(np.abs(np.diagonal(matrices, axis1=1, axis2=2)))
+    outer = np.where(scale > 0, scale, 1.0)[:, :, None] * np.where(scale > 0, scale, 1.0)[:, None, :]
+    correlation = matrices / outer
+    skewed = np.abs(correlation - np.swapaxes(correlation, 1, 2)).max(axis=(1, 2)) > 1e-9
+    negative = np.linalg.eigvalsh(correlation)[:, 0] < -1e-5
+    for row in np.flatnonzero(skewed | negative)[:1]:
+        raise InputError(
+            f"covariance, row {row}",
+            "a matrix that is not symmetric" if skewed[row] else "a negative eigenvalue",
+            "a covariance of north, east, down (m), roll, pitch, yaw (rad)",
+            "check the order of rows and columns",
+        )
+
+
+def load_platform_file(platform: str, project: Path | str = ".") -> Platform:
+    """What config/platforms/PLATFORM.yaml says, of the project in or above a folder; raises InputError."""
+    return _loaded(platform, project).platforms[platform]
+
+
+def load_observations(platform: str, project: Path | str = ".") -> pd.DataFrame:
+    """The table of observations of a platform of a project, read from its files; raises InputError.
+
+    Columns as in `result_schemas.OBSERVATIONS`, one row a point seen.
+    """
+    loaded = _loaded(platform, project)
+    return read_observations(loaded.platforms[platform], recorded_folder(loaded, platform, find_project(project)))
+
+
+def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
+    """The calibration of a platform of a project, with the settings of its config.yaml; raises LineposeError.
+
+    The pose, its covariance and all tables are those of `linepose run`, for the accepted observations.
+    """
+    loaded = _loaded(platform, project)
+    settings, study = loaded.platforms[platform], loaded.study
+    hand = settings.hand_measured
+    observations = read_observations(settings, recorded_folder(loaded, platform, find_project(project)))
+    return calibrate(
+        observations,
+        settings.intrinsics(),
+        HandMeasured(hand.position_m, hand.euler_deg, hand.sigma_position_m, hand.sigma_euler_deg),
+        CalibrationSettings(
+            noise_model=settings.noise_model,
+            prior=settings.prior,
+            threshold_px=study.outliers.threshold_px,
+            minimum_observations=study.outliers.minimum_observations,
+            search=study.search.settings(),
+            sampling=study.sampling_of(settings.noise_model).settings(),
+            seed=study.seed,
+        ),
+    )
+
+
+def recorded_folder(project: Project, platform: str, root: Path) -> Path:
+    """Folder of what a platform recorded; raises InputError where a simulated survey was not made yet."""
+    folder = root / project.folder(platform)
+    if project.platforms[platform].source.dataset is None and not folder.is_dir():
+        remedy = f"make it with `linepose run {platform}`"
+        raise InputError(str(folder), "no such folder", "the simulated survey", remedy)
+    return folder
+
+
+def _loaded(platform: str, project: Path | str) -> Project:
+    return load_platform_project(platform, find_project(project))

@@ -1,0 +1,138 @@
+"""A calibration without the workflow: observations, camera and hand measurement in, pose and covariance out.
+
+The stages are those of the workflow, on the accepted observations only; with the same settings the numbers are the
+same to the last bit.
+"""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from linepose.errors import InputError
+from linepose.estimation.diagnostics import diagnose_samples
+from linepose.estimation.noise_models import NOISE_MODELS, likelihood_of
+from linepose.estimation.optimise import Search
+from linepose.estimation.outliers import outlier_table, reject_outliers, stage_observations
+from linepose.estimation.sampling import (
+    IndependenceSettings,
+    SamplingSettings,
+    default_settings,
+    sample,
+    section_of,
+    stage_seed,
+)
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import N_PARAMETERS
+from linepose.likelihood.names import PUBLISHED
+from linepose.likelihood.prior import pose_prior
+from linepose.pipeline.calibration import Calibration, HandMeasured
+from linepose.pipeline.residual_tables import residual_tables
+from linepose.pipeline.stages import (
+    diagnostics_table,
+    estimated_parameters,
+    optimise_stages,
+    pose_table,
+    sample_table,
+    samples_from_table,
+)
+from linepose.survey.observations import (
+    COVARIANCE_COLUMNS,
+    EULER_COLUMNS,
+    POSITION_COLUMNS,
+    check_determined,
+    survey_from_table,
+)
+
+_NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
+_STAGE = "inliers"
+PRIORS = ("none", "hand_measured")
+
+
+@dataclass(frozen=True)
+class CalibrationSettings:
+    """How a calibration is made; the defaults are those of config/config.yaml.
+
+    Observations whose mean reprojection error stays above `threshold_px` are removed, the worst first, down to
+    `minimum_observations`. With `prior` "hand_measured" the hand measurement is a Gaussian prior of the pose, not only
+    the start. `sampling` is that of the noise model where it is None. Every random number follows from `seed`.
+    """
+
+    noise_model: str = PUBLISHED
+    prior: Literal["none", "hand_measured"] = "none"
+    threshold_px: float = 5.0
+    minimum_observations: int = 10
+    search: Search = field(default_factory=Search)
+    sampling: SamplingSettings | IndependenceSettings | None = None
+    seed: int = 2017
+
+
+def calibrate(
+    observations: pd.DataFrame,
+    camera: Camera,
+    hand_measured: HandMeasured,
+    settings: CalibrationSettings | None = None,
+) -> Calibration:
+    """The camera's pose on the vehicle, with outliers removed and the uncertainty sampled.
+
+    `observations` has one row a point seen: observation, point, u_px, body pose and covariance, as
+    `observations_from_arrays` and `load_observations` make it. Raises InputError where it lacks something, and
+    EstimationError where no set of observations agrees.
+    """
+    settings = settings or CalibrationSettings()
+    observations = _checked(observations, settings)
+    survey = survey_from_table(observations)
+    check_determined(survey, N_PARAMETERS)
+    start, hand_covariance = hand_measured.pose, hand_measured.covariance
+    prior = pose_prior(start, hand_covariance) if settings.prior == "hand_measured" else None
+    likelihood = likelihood_of(settings.noise_model, survey, camera, start, prior)
+    stages = reject_outliers(likelihood, start, settings.minimum_observations, settings.search)
+    outliers = outlier_table(stages, settings.threshold_px)
+    accepted = {_STAGE: stage_observations(outliers)[_STAGE]}
+    optima = optimise_stages(likelihood, accepted, start, settings.search)
+    names = likelihood.parameter_names
+    optimum = optima.loc[0, list(names)].to_numpy(dtype=float, copy=True)
+    seed = stage_seed(settings.seed, len(accepted[_STAGE]))
+    sampling = settings.sampling or default_settings(settings.noise_model)
+    chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, sampling)
+    samples = sample_table(chain, names)
+    diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)), section_of(sampling))
+    residuals, points = residual_tables(likelihood, accepted, {_STAGE: optimum})
+    return Calibration(
+        pose=optimum[:N_PARAMETERS],
+        covariance=chain.covariance()[:N_PARAMETERS, :N_PARAMETERS],
+        hand_measured=hand_measured,
+        threshold_px=settings.threshold_px,
+        noise_model=settings.noise_model,
+        observations=observations,
+        outlier_removal=outliers,
+        optima=optima,
+        samples=samples,
+        diagnostics=diagnostics_table(optima, {_STAGE: diagnostics}),
+        poses=pose_table(optima, {_STAGE: diagnostics.sigma}, start, np.sqrt(np.diag(hand_covariance))),
+        residuals=residuals,
+        points=points,
+    )
+
+
+def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.DataFrame:
+    """The observations with the columns that may be left out; raises InputError."""
+    if settings.noise_model not in NOISE_MODELS:
+        known = ", ".join(NOISE_MODELS)
+        raise InputError("noise_model", repr(settings.noise_model), f"one of {known}", "choose one of these")
+    if settings.prior not in PRIORS:
+        raise InputError("prior", repr(settings.prior), f"one of {', '.join(PRIORS)}", "choose one of these")
+    missing = [name for name in _NEEDED if name not in observations.columns]
+    if missing:
+        raise InputError(
+            "observations",
+            f"no column {', '.join(missing[:3])}" + (f" and {len(missing) - 3} more" if len(missing) > 3 else ""),
+            "observation, point, u_px, the body's pose and its covariance",
+            "make the table with linepose.observations_from_arrays",
+        )
+    if observations.empty:
+        raise InputError("observations", "no row", "one row a point seen", "add observations")
+    if "time_us" not in observations.columns:
+        observations = observations.assign(time_us=np.zeros(len(observations), dtype=np.int64))
+    return observations if "nav_gap_s" in observations.columns else observations.assign(nav_gap_s=0.0)

@@ -1,0 +1,106 @@
+"""What a platform recorded, whatever wrote it: from its files to the table of observations."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from linepose.config.platform import Platform
+from linepose.config.source import LabelledViewsSection, ScansSection
+from linepose.geometry.pose import N_PARAMETERS
+from linepose.inputs.labels import read_point_labels
+from linepose.inputs.labels.labelled_views import read_labelled_views, select_views
+from linepose.inputs.navigation import log_covariances, read_navigation
+from linepose.inputs.observed_points import detected_points, refined_points, select_scans
+from linepose.inputs.scans.line_times import line_times_of
+from linepose.inputs.scans.scan_files import read_scan
+from linepose.inputs.targets.refine import METHODS
+from linepose.survey.navigation import NavigationCovariances, associate_covariances, read_covariances
+from linepose.survey.navigation_log import POSE_AT, NavigationLog, associate_poses
+from linepose.survey.observations import check_determined, survey_from_table
+
+
+def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
+    """Points of all observations in a data set's folder.
+
+    Columns as in `result_schemas.POINTS` (labelled views) or `SCAN_POINTS` (scans). Raises InputError.
+    """
+    source, n_pixels = platform.source, platform.camera.n_pixels
+    if isinstance(source, LabelledViewsSection):
+        return read_labelled_views(select_views(folder, source.views, source.first, source.step), n_pixels)
+    scans, refine = select_scans(folder, source.scans, source.left_out), METHODS[source.refinement]
+    line_times = line_times_of(source)
+    if source.points == "detection":
+        return detected_points(scans, refine, n_pixels, line_times)
+    labels = read_point_labels(folder, source.labels, scans, n_pixels)
+    return refined_points(scans, labels, refine, n_pixels, line_times)
+
+
+def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> pd.DataFrame:
+    """The points with body pose and covariance; columns as in `result_schemas.OBSERVATIONS`.
+
+    Raises InputError, also where the views are too few for the pose.
+    """
+    source, navigation = platform.source, platform.navigation
+    if isinstance(source, ScansSection):
+        record, points = read_navigation(source, folder), points.drop(columns="line", errors="ignore")
+        points = associate_poses(points, record.log, POSE_AT[navigation.association], navigation.maximum_pose_gap_s)
+        reported, place = log_covariances(record, source, navigation.covariance_columns, folder), folder / source.scans
+    else:
+        reported, place = read_reported(platform, folder), folder / source.views
+    observations = associate_covariances(points, reported, navigation.maximum_gap_s)
+    check_determined(survey_from_table(observations), N_PARAMETERS, str(place))
+    return observations
+
+
+def read_log(platform: Platform, folder: Path) -> NavigationLog:
+    """The raw navigation log of a platform with scans; raises InputError."""
+    assert isinstance(platform.source, ScansSection)
+    return read_navigation(platform.source, folder).log
+
+
+def map_frame_table(platform: Platform, folder: Path) -> pd.DataFrame:
+    """Where the log says that north, east, down are; no row where it does not.
+
+    A projected system, or EPSG:4979 and the origin of local coordinates: latitude, longitude (deg), height (m).
+    Columns as in `result_schemas.MAP_FRAME`.
+    """
+    record = read_navigation(platform.source, folder) if isinstance(platform.source, ScansSection) else None
+    columns = ["crs", "latitude_deg", "longitude_deg", "height_m"]
+    if record is None or record.crs is None:
+        return pd.DataFrame({name: pd.Series(dtype=str if name == "crs" else float) for name in columns})
+    return pd.DataFrame([[record.crs, *(record.origin or (None, None, None))]], columns=columns)
+
+
+def read_reported(platform: Platform, folder: Path) -> NavigationCovariances:
+    """The navigation covariances of a platform; raises InputError."""
+    source, columns = platform.source, platform.navigation.covariance_columns
+    if isinstance(source, ScansSection):
+        return log_covariances(read_navigation(source, folder), source, columns, folder)
+    return read_covariances(folder / source.covariances, columns)
+
+
+def read_observations(platform: Platform, folder: Path) -> pd.DataFrame:
+    """The table of observations of a platform whose files stand in this folder.
+
+    Columns as in `result_schemas.OBSERVATIONS`. Raises InputError for the first thing that cannot be used.
+    """
+    return with_navigation(read_points(platform, folder), platform, folder)
+
+
+def check_readable(platform: Platform, folder: Path) -> str:
+    """What the folder of a platform's records holds, in words; raises InputError for the first fault.
+
+    Of labelled views all is known then; what only extraction can tell of scans (is the board in them?) is left to it.
+    """
+    source = platform.source
+    if isinstance(source, LabelledViewsSection):
+        observations = read_observations(platform, folder)
+        return f"{len(observations)} points in {observations['observation'].nunique()} views"
+    scans = select_scans(folder, source.scans, source.left_out)
+    line_times = line_times_of(source)
+    for path in scans.values():
+        read_scan(path, line_times)
+    if source.points == "labels":
+        read_point_labels(folder, source.labels, scans, platform.camera.n_pixels)
+    read_reported(platform, folder)
+    return f"{len(scans)} scans"

@@ -1,0 +1,108 @@
+"""The pose as people ask for it: rotation vector, Euler angles and quaternion, beside the hand measurement."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
+
+from linepose.arrays import Floats
+from linepose.geometry.pose import euler_covariance, euler_pose
+from linepose.geometry.rotations import matrix_from_rotation_vector
+
+_POSITION = ("r_x forward", "r_y right", "r_z down")
+_GIMBAL_DEG = 89.0
+
+
+@dataclass(frozen=True)
+class PoseNumber:
+    """One number of the pose in its unit: estimate, hand measurement, the sigma of each, and the truth if known."""
+
+    name: str
+    unit: str
+    estimate: float
+    sigma: float
+    hand: float
+    hand_sigma: float
+    truth: float | None = None
+
+    @property
+    def difference(self) -> float:
+        """Estimate minus hand measurement."""
+        return self.estimate - self.hand
+
+    @property
+    def difference_sigmas(self) -> float:
+        """The difference in sigmas of the difference."""
+        return self.difference / float(np.hypot(self.sigma, self.hand_sigma))
+
+    @property
+    def error_sigmas(self) -> float | None:
+        """Estimate minus truth in sigmas of the estimate."""
+        return None if self.truth is None else (self.estimate - self.truth) / self.sigma
+
+
+@dataclass(frozen=True)
+class PoseWithCovariance:
+    """A pose (6,) with a rotation vector, and its covariance (6, 6)."""
+
+    pose: Floats
+    covariance: Floats
+
+
+def rotation_vector_numbers(
+    estimate: PoseWithCovariance, hand: PoseWithCovariance, truth: Floats | None = None
+) -> list[PoseNumber]:
+    """The six parameters, m and rad."""
+    names = [*_POSITION, "theta e_x", "theta e_y", "theta e_z"]
+    return _numbers(names, ["m"] * 3 + ["rad"] * 3, estimate, hand, truth)
+
+
+def euler_numbers(
+    estimate: PoseWithCovariance, hand: PoseWithCovariance, truth: Floats | None = None
+) -> list[PoseNumber]:
+    """Roll, pitch, yaw (zyx intrinsic) in degrees; none where the pitch is too near 90 deg to tell them apart."""
+    poses = [estimate.pose, hand.pose] + ([] if truth is None else [truth])
+    if any(abs(np.degrees(euler_pose(pose)[4])) > _GIMBAL_DEG for pose in poses):
+        return []
+    scale = np.diag([1.0] * 3 + [float(np.degrees(1.0))] * 3)
+    in_euler = [
+        PoseWithCovariance(scale @ euler_pose(one.pose), scale @ euler_covariance(one.pose, one.covariance) @ scale)
+        for one in (estimate, hand)
+    ]
+    numbers = _numbers(
+        [*_POSITION, "roll", "pitch", "yaw"],
+        ["m"] * 3 + ["°"] * 3,
+        in_euler[0],
+        in_euler[1],
+        None if truth is None else scale @ euler_pose(truth),
+    )
+    return numbers[3:]
+
+
+def quaternion(pose: ArrayLike) -> Floats:
+    """Unit quaternion (w, x, y, z) of a pose's rotation, camera to body, w not negative; (6,) to (4,)."""
+    rotation = Rotation.from_matrix(matrix_from_rotation_vector(np.array(pose, dtype=float)[3:]))
+    return np.asarray(rotation.as_quat(canonical=True, scalar_first=True))
+
+
+def _numbers(
+    names: list[str],
+    units: list[str],
+    estimate: PoseWithCovariance,
+    hand: PoseWithCovariance,
+    truth: Floats | None,
+) -> list[PoseNumber]:
+    sigma, hand_sigma = (np.sqrt(np.diag(one.covariance)) for one in (estimate, hand))
+    return [
+        PoseNumber(
+            names[k],
+            units[k],
+            float(estimate.pose[k]),
+            float(sigma[k]),
+            float(hand.pose[k]),
+            float(hand_sigma[k]),
+            None if truth is None else float(truth[k]),
+        )
+        for k in range(len(names))
+    ]

@@ -1,0 +1,145 @@
+"""What was measured: every observation of the pattern's points, with the body pose and its covariance.
+
+An observation is one view of the whole pattern, numbered from 1 as the paper does. A point that an observation
+lacks is NaN in `u_px`, and everything else of it is ignored. Positions are local: the survey origin is subtracted
+on reading, because map coordinates of 6e6 m leave too few digits for arithmetic.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+
+POSITION_COLUMNS: Final = ("north_m", "east_m", "down_m")
+EULER_COLUMNS: Final = ("roll_rad", "pitch_rad", "yaw_rad")
+_AXES: Final = ("north", "east", "down", "roll", "pitch", "yaw")
+COVARIANCE_INDICES: Final = tuple((i, j) for i in range(6) for j in range(i, 6))
+COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}" for i, j in COVARIANCE_INDICES)
+_RAYS_PER_POINT: Final = 2
+
+
+@dataclass(frozen=True)
+class Survey:
+    """All observations of one platform; N observations of M points.
+
+    number (N,), time_us (N, M) int64, u_px (N, M), position_m (N, M, 3) north, east, down from `origin_m` (3,),
+    euler_rad (N, M, 3) roll, pitch, yaw, covariance (N, M, 6, 6) of position and angles, nav_gap_s (N, M).
+    """
+
+    number: NDArray[np.int64]
+    time_us: NDArray[np.int64]
+    u_px: Floats
+    position_m: Floats
+    euler_rad: Floats
+    covariance: Floats
+    nav_gap_s: Floats
+    origin_m: Floats
+
+    @property
+    def n_observations(self) -> int:
+        """Number of observations N."""
+        return len(self.number)
+
+    @property
+    def n_points(self) -> int:
+        """Number of pattern points M."""
+        return int(self.u_px.shape[1])
+
+    def select(self, numbers: Sequence[int]) -> "Survey":
+        """The survey of these observation numbers, in the given order; raises InputError for one that is not here."""
+        rows = {int(number): row for row, number in enumerate(self.number)}
+        missing = [int(number) for number in numbers if int(number) not in rows]
+        if missing:
+            raise InputError(
+                "observations",
+                f"number {', '.join(map(str, missing))}",
+                f"numbers among {sorted(rows)}",
+                "remove it from the selection",
+            )
+        index = [rows[int(number)] for number in numbers]
+        return Survey(
+            number=self.number[index],
+            time_us=self.time_us[index],
+            u_px=self.u_px[index],
+            position_m=self.position_m[index],
+            euler_rad=self.euler_rad[index],
+            covariance=self.covariance[index],
+            nav_gap_s=self.nav_gap_s[index],
+            origin_m=self.origin_m,
+        )
+
+
+def survey_from_table(table: pd.DataFrame) -> Survey:
+    """The survey that a table like results/NAME/observations.parquet holds, one row an observed point.
+
+    The origin is the mean position rounded to whole metres.
+    """
+    numbers = np.sort(table["observation"].unique()).astype(np.int64)
+    points = np.arange(int(table["point"].max()) + 1)
+    shape = (len(numbers), len(points))
+    row = np.searchsorted(numbers, table["observation"].to_numpy())
+    column = table["point"].to_numpy().astype(int)
+    origin = np.round(table[list(POSITION_COLUMNS)].to_numpy().mean(axis=0))
+
+    def gridded(values: NDArray[np.float64], trailing: tuple[int, ...] = ()) -> Floats:
+        grid = np.full((*shape, *trailing), np.nan)
+        grid[row, column] = values
+        return grid
+
+    upper = table[list(COVARIANCE_COLUMNS)].to_numpy()
+    covariance = np.zeros((len(table), 6, 6))
+    for k, (i, j) in enumerate(COVARIANCE_INDICES):
+        covariance[:, i, j] = covariance[:, j, i] = upper[:, k]
+    time_us = np.zeros(shape, dtype=np.int64)
+    time_us[row, column] = table["time_us"].to_numpy()
+    return Survey(
+        number=numbers,
+        time_us=time_us,
+        u_px=gridded(table["u_px"].to_numpy()),
+        position_m=gridded(table[list(POSITION_COLUMNS)].to_numpy() - origin, (3,)),
+        euler_rad=gridded(table[list(EULER_COLUMNS)].to_numpy(), (3,)),
+        covariance=gridded(covariance, (6, 6)),
+        nav_gap_s=gridded(table["nav_gap_s"].to_numpy()),
+        origin_m=origin,
+    )
+
+
+def table_from_survey(survey: Survey) -> pd.DataFrame:
+    """One row an observed point, ordered by observation and point: the inverse of `survey_from_table`."""
+    row, column = np.nonzero(np.isfinite(survey.u_px))
+    covariance = survey.covariance[row, column]
+    columns: dict[str, NDArray[np.float64] | NDArray[np.int64]] = {
+        "observation": survey.number[row],
+        "point": column.astype(np.int64),
+        "time_us": survey.time_us[row, column],
+        "u_px": survey.u_px[row, column],
+    }
+    position = survey.position_m[row, column] + survey.origin_m
+    columns |= {name: position[:, i] for i, name in enumerate(POSITION_COLUMNS)}
+    columns |= {name: survey.euler_rad[row, column, i] for i, name in enumerate(EULER_COLUMNS)}
+    columns |= {name: covariance[:, i, j] for name, (i, j) in zip(COVARIANCE_COLUMNS, COVARIANCE_INDICES, strict=True)}
+    columns["nav_gap_s"] = survey.nav_gap_s[row, column]
+    return pd.DataFrame(columns)
+
+
+def check_determined(survey: Survey, n_parameters: int, place: str = "observations") -> None:
+    """Raise InputError, naming `place`, where the views are too few for the pose.
+
+    Each view of a point gives 2 equations, each point takes 3 unknowns.
+    """
+    views = np.isfinite(survey.u_px).sum(axis=0)
+    used = views[views >= _RAYS_PER_POINT]
+    spare = int(2 * used.sum() - 3 * len(used))
+    if spare < n_parameters:
+        raise InputError(
+            place,
+            f"{spare} spare equations ({survey.n_observations} observations, {len(used)} points in two or more)",
+            f"at least {n_parameters}",
+            "add observations, or label more points",
+        )

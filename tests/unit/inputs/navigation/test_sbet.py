@@ -1,0 +1,94 @@
+import numpy as np
+import pytest
+
+from linepose.config.navigation_formats import SbetSection
+from linepose.config.source import ScansSection
+from linepose.errors import InputError
+from linepose.inputs import gps_time
+from linepose.inputs.navigation import read_navigation
+from unit.inputs import writers
+from unit.inputs.drive import ORIGIN
+
+
+def section(**keys):
+    return SbetSection(format="sbet", **({"file": "a.sbet"} | keys))
+
+
+@pytest.mark.devices
+def test_real_trajectory(samples):
+    """PDAL's two records: their numbers, as another program prints them."""
+    record = read_navigation(section(file="sbet/2-points.sbet", gps_week=1774), samples)
+    assert record.origin == pytest.approx(
+        (np.rad2deg(0.5680211852972264), np.rad2deg(-2.04165439230394), 107.71529532965604)
+    )
+    of_week = gps_time.gps_from_unix(record.log.time_us) - 1774 * gps_time.WEEK_US
+    np.testing.assert_array_equal(of_week, [151_631_002_836, 151_631_007_832])
+    heading = 3.0467732302786623 + 0.021984147369226575  # minus a wander angle that is negative
+    np.testing.assert_allclose(
+        record.log.euler_rad[0], [-0.028134071493213387, -0.024299053938891393, heading], atol=1e-12
+    )
+
+
+@pytest.mark.devices
+def test_real_trajectory_cut_by_a_byte_is_refused(samples):
+    with pytest.raises(InputError, match=r"badfile.sbet: found 271 bytes, 1 whole records and 135 bytes more.*restore"):
+        read_navigation(section(file="sbet/badfile.sbet", gps_week=1774), samples)
+
+
+def test_heading_is_true_whatever_the_wander_angle(tmp_path, drive):
+    records = []
+    for wander in (-0.7, 0.0, 2.9):
+        writers.write_sbet(tmp_path / "a.sbet", drive, wander)
+        records.append(read_navigation(section(gps_week=int(drive.week[0])), tmp_path))
+    np.testing.assert_allclose(records[0].log.euler_rad, records[1].log.euler_rad, atol=1e-12)
+    np.testing.assert_allclose(records[2].log.euler_rad, records[1].log.euler_rad, atol=1e-12)
+
+
+def test_week_is_that_of_the_scans(tmp_path, drive):
+    writers.write_sbet(tmp_path / "a.sbet", drive)
+    (tmp_path / "scans").mkdir()
+    (tmp_path / "scans" / "one.hdr").touch()
+    (tmp_path / "scans" / "one-times.csv").write_text(f"time_us\n{drive.time_us[3]}\n{drive.time_us[4]}\n")
+    source = ScansSection(kind="scans", dataset="x", navigation={"format": "sbet", "file": "a.sbet"})
+    np.testing.assert_array_equal(read_navigation(source, tmp_path).log.time_us, drive.time_us)
+    with pytest.raises(InputError, match=r"seconds of the GPS week without the week.*set source.navigation.gps_week"):
+        read_navigation(source.navigation, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("file", "keys", "told"),
+    [
+        ("a.sbet", {"file": "b.sbet"}, r"b.sbet: found no such file"),
+        ("a.rms", {"rms": "a.rms"}, r"a.rms: found 9591 bytes.*an RMS file \(smrmsg\): a multiple of 80 bytes"),
+        ("a.sbet", {}, r"record 1: found nan as its time"),
+        ("backwards", {}, r"a.sbet, record 3: found time .*, expected a time after the record before it"),
+        ("degrees", {}, r"a.sbet, record 1: found latitude -1941.71, longitude 8662.76 deg"),
+        ("empty", {}, r"a.sbet: found 0 bytes"),
+    ],
+)
+def test_broken_file_is_one_line(tmp_path, drive, file, keys, told):
+    writers.write_sbet(tmp_path / "a.sbet", drive)
+    writers.write_rms(tmp_path / "a.rms", drive)
+    table = np.fromfile(tmp_path / "a.sbet").reshape(-1, 17)
+    if file == "a.rms":
+        (tmp_path / file).write_bytes((tmp_path / file).read_bytes()[:-9])
+    elif file == "a.sbet" and not keys:
+        table[0, 0] = np.nan
+        table.tofile(tmp_path / file)
+    elif file == "backwards":
+        table[[2, 1]].tofile(tmp_path / "b")
+        np.concatenate([table[[0, 5]], table[2:]]).tofile(tmp_path / "a.sbet")
+    elif file == "degrees":
+        table[:, 1:3] = np.rad2deg(table[:, 1:3])
+        table.tofile(tmp_path / "a.sbet")
+    elif file == "empty":
+        (tmp_path / "a.sbet").write_bytes(b"")
+    with pytest.raises(InputError, match=told) as error:
+        read_navigation(section(gps_week=int(drive.week[0]), origin=ORIGIN, **keys), tmp_path)
+    assert "\n" not in str(error.value)
+
+
+def test_every_file_is_one_that_the_workflow_watches(tmp_path, drive):
+    writers.write_sbet(tmp_path / "a.sbet", drive)
+    writers.write_rms(tmp_path / "a.rms", drive)
+    assert section(rms="*.rms").files(tmp_path) == {tmp_path / "a.sbet", tmp_path / "a.rms"}

@@ -1,0 +1,86 @@
+import numpy as np
+import pytest
+
+from linepose.inputs.scans.scan_files import Scan
+from linepose.inputs.targets.detect import detect
+from linepose.inputs.targets.refine import METHODS
+
+TURN = np.deg2rad(20)
+ROTATED = 330 * np.array([[np.cos(TURN), -np.sin(TURN)], [np.sin(TURN), np.cos(TURN)]])
+WAYS = {
+    "along": ((400, 300), [[0, 250], [420, 0]], [150, 200], 0.0),
+    "across": ((300, 500), [[500, 0], [0, 350]], [250, 150], 0.0),
+    "half turn": ((300, 500), [[-500, 0], [0, -350]], [250, 150], 0.0),
+    "mirrored": ((300, 500), [[-500, 0], [0, 350]], [250, 150], 0.0),
+    "mirrored upside down": ((300, 500), [[500, 0], [0, -350]], [250, 150], 0.0),
+    "turned": ((400, 400), ROTATED, [200, 200], 0.0),
+    "sheared": ((300, 600), [[450, 150], [60, 300]], [300, 150], 0.0),
+    "stretched": ((1600, 250), [[0, 250], [1700, 0]], [125, 800], 0.0),
+    "stretched, sheared, mirrored": ((1600, 300), [[60, 250], [-1500, 350]], [150, 800], 0.0),
+    "bent": ((400, 300), [[0, 250], [420, 0]], [130, 200], 1e-3),
+    "small": ((150, 120), [[0, 110], [130, 0]], [60, 75], 0.0),
+}
+
+
+def detected(picture):
+    times = np.arange(len(picture.intensity))
+    return detect(Scan(picture.intensity, times, "scan"), METHODS["centroid"])
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_every_point_with_its_id_and_place(drawn, way):
+    shape, matrix, offset, bend = WAYS[way]
+    picture = drawn(matrix, offset, shape, bend)
+    found = detected(picture)
+    assert found.doubt == ""
+    np.testing.assert_array_equal(found.point, np.arange(15))
+    dot = 0.01 * np.linalg.norm(matrix, axis=1)  # its diameter in pixels and lines
+    np.testing.assert_array_less(np.abs(found.u_px - picture.truth[:, 0]), 0.06 * max(dot[0], 2.0))
+    np.testing.assert_array_less(np.abs(found.line - picture.truth[:, 1]), 0.06 * max(dot[1], 2.0))
+
+
+@pytest.mark.parametrize("covered", [(14,), (0,), (6, 7), (0, 4, 10)])
+def test_covered_points_are_left_out(drawn, covered):
+    found = detected(drawn([[0, 250], [420, 0]], [150, 200], covered=covered))
+    np.testing.assert_array_equal(found.point, np.setdiff1d(np.arange(15), covered))
+
+
+def test_column_beyond_the_scan_leaves_the_other_ids_right(drawn):
+    picture = drawn([[500, 0], [0, 350]], [250, 150], (300, 400))  # points 4, 5 and 14 lie at u = 401
+    found = detected(picture)
+    np.testing.assert_array_equal(found.point, np.setdiff1d(np.arange(15), [4, 5, 14]))
+    np.testing.assert_allclose(found.u_px, picture.truth[found.point, 0], atol=0.2)
+
+
+def test_board_without_its_mark_is_doubtful(drawn):
+    found = detected(drawn([[0, 250], [420, 0]], [150, 200], with_mark=False))
+    assert "corner mark is not seen" in found.doubt
+    assert len(found.point) == 0
+
+
+def test_mark_beyond_the_scan_is_doubtful(drawn):
+    found = detected(drawn([[-500, 0], [0, 350]], [230, 150], (300, 400)))  # the mark lies at u = 422
+    assert "corner mark" in found.doubt
+    assert len(found.point) == 0
+
+
+def test_ground_alone_has_no_board(drawn):
+    found = detected(drawn([[0, 250], [420, 0]], [5000, 200]))
+    assert found.doubt.startswith("no board")
+
+
+def test_even_light_has_no_board():
+    scan = Scan(np.full((50, 60), 7, dtype=np.float32), np.arange(50), "scan")
+    assert detect(scan, METHODS["centroid"]).doubt.startswith("no board")
+
+
+def test_tiny_scan_has_no_board():
+    scan = Scan(np.zeros((3, 4), dtype=np.float32), np.arange(3), "scan")
+    assert detect(scan, METHODS["centroid"]).doubt.startswith("no board")
+
+
+def test_noise_of_a_dim_scan(drawn):
+    picture = drawn([[0, 250], [420, 0]], [150, 200], noise=0.03)
+    found = detected(picture)
+    assert len(found.point) >= 12
+    np.testing.assert_allclose(found.u_px, picture.truth[found.point, 0], atol=0.5)

@@ -1,0 +1,96 @@
+import numpy as np
+import pytest
+
+from linepose.errors import InputError
+from linepose.inputs.number_files import check_microseconds, read_numbers
+
+WHAT = "time (us), a, b"
+
+
+@pytest.fixture
+def csv(tmp_path):
+    """Writes a file and gives its path."""
+
+    def write(text):
+        path = tmp_path / "numbers.csv"
+        path.write_bytes(text.encode() if isinstance(text, str) else text)
+        return path
+
+    return write
+
+
+def test_reads_whole_numbers_exactly_and_empty_cells_as_nan(csv):
+    time_us, others = read_numbers(csv("1466040439908161,1.5,-2e-3\n1466040439908162,, 4\r\n\n"), 3, WHAT)
+    assert time_us.tolist() == [1466040439908161, 1466040439908162]
+    np.testing.assert_array_equal(others, [[1.5, -2e-3], [np.nan, 4.0]])
+
+
+@pytest.mark.parametrize(
+    ("content", "place", "rest"),
+    [
+        ("", "", "found an empty file, expected time (us), a, b; restore it, or leave it out"),
+        (" \n\n", "", "found an empty file, expected time (us), a, b; restore it, or leave it out"),
+        ("1,2,3\n1,2\n", ", row 2", "found 2 columns, expected 3 columns (time (us), a, b); mend the row"),
+        ("1,2,3,4\n", ", row 1", "found 4 columns, expected 3 columns (time (us), a, b); mend the row"),
+        ("1,2,3\n\n1,2,x\n", ", row 2", "found 1 columns, expected 3 columns (time (us), a, b); mend the row"),
+        ("1,2,3\n1,2,x\n", ", row 2, column 3", "found 'x', expected a number; mend the cell"),
+        (
+            "t,a,b\n1,2,3\n",
+            ", row 1, column 1",
+            "found 't', expected a whole number; write the time as a whole number of microseconds",
+        ),
+        (
+            "1,2,3\n1466040439.908,2,3\n",
+            ", row 2, column 1",
+            "found '1466040439.908', expected a whole number; write the time as a whole number of microseconds",
+        ),
+        (
+            "99999999999999999999,2,3\n",
+            ", row 1, column 1",
+            "found '99999999999999999999', expected a whole number; write the time as a whole number of microseconds",
+        ),
+        (b"1,2,\xff\n", "", "found bytes that are not UTF-8, expected time (us), a, b; save the file as UTF-8 text"),
+    ],
+)
+def test_names_the_fault(csv, content, place, rest):
+    path = csv(content)
+    with pytest.raises(InputError) as error:
+        read_numbers(path, 3, WHAT)
+    assert str(error.value) == f"{path}{place}: {rest}"
+
+
+def test_names_a_missing_file(tmp_path):
+    path = tmp_path / "none.csv"
+    with pytest.raises(InputError) as error:
+        read_numbers(path, 3, WHAT)
+    assert str(error.value) == (
+        f"{path}: found no such file, expected time (us), a, b; restore it, or correct the platform file"
+    )
+
+
+@pytest.mark.parametrize(
+    ("time", "remedy"),
+    [
+        (1_466_040_439, "they look like seconds: multiply by 1000000"),
+        (1_466_040_439_908, "they look like milliseconds: multiply by 1000"),
+        (1_466_040_439_908_160_000, "they look like nanoseconds: multiply by 0.001"),
+        (0, "write microseconds since 1970"),
+        (-5, "write microseconds since 1970"),
+    ],
+)
+def test_guesses_the_unit_of_times_that_are_no_microseconds(tmp_path, time, remedy):
+    path = tmp_path / "nav.csv"
+    with pytest.raises(InputError) as error:
+        check_microseconds(np.array([1_466_040_439_908_160, time]), path)
+    assert str(error.value) == (
+        f"{path}, row 2, column 1: found time {time}, expected microseconds since 1970-01-01; {remedy}"
+    )
+
+
+def test_microseconds_from_1980_to_2100_pass(tmp_path):
+    first, last = (int(np.datetime64(day, "us").astype(int)) for day in ("1980-01-06", "2100-01-01"))
+    check_microseconds(np.array([first, last]), tmp_path)
+    with pytest.raises(InputError):
+        check_microseconds(np.array([first - 1]), tmp_path)
+    with pytest.raises(InputError):
+        check_microseconds(np.array([last + 1]), tmp_path)

@@ -1,0 +1,29 @@
+import pytest
+
+from linepose.output.figures.render import render_figures
+from linepose.output.figures.results import PlatformResults
+from linepose.output.report.assemble import platform_on_page
+from linepose.output.report.made_with import settings_text, versions
+from linepose.output.report.page import render_page
+from linepose.paper.report_sections import published_sections
+from linepose.pipeline.result_schemas import FIGURES
+from linepose.tables import write_table
+from unit import made_up
+from unit.output.report.made_up_page import REGRESSION
+
+
+@pytest.fixture(scope="session")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made_up")
+    made_up.write_results(folder)
+    return PlatformResults("made-up", made_up.platform(description="Fast & <made up>"), folder, 5.0)
+
+
+@pytest.fixture(scope="session")
+def page(results):
+    """The whole report of one made-up platform."""
+    folder = results.folder / "figures"
+    write_table(render_figures(results, folder), folder / "index.parquet", FIGURES)
+    one = platform_on_page(results, results.platform.model_dump(mode="json"))
+    study = settings_text({"data_folders": ["data", "/home/someone/private/data"], "seed": 1})
+    return render_page([one], published_sections(REGRESSION, {"table3": made_up.pose()}), study, versions())

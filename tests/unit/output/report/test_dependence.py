@@ -1,0 +1,46 @@
+"""What the pose depends on: how far it moves, from the tables of the experiments that were run."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from linepose.experiments import schemas
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.output.figures.results import PlatformResults
+from linepose.output.report.dependence import dependence_section
+from linepose.tables import write_table
+from unit import made_up
+
+
+@pytest.fixture
+def results(tmp_path):
+    made_up.write_results(tmp_path)
+    return PlatformResults("made-up", made_up.platform(), tmp_path, 5.0)
+
+
+def sensitivity():
+    rows = []
+    for change, moved_m in (("nominal", 0.0), ("focal length + 1 sigma", 0.04)):
+        pose = made_up.OPTIMUM + np.array([moved_m, 0, 0, 0, 0, 0])
+        rows.append({"change": change, **dict(zip(POSE_COLUMNS, pose, strict=True)), "distance_m": moved_m})
+    table = pd.DataFrame(rows).assign(n_observations=4, observations="1", n_evaluations=1, neg_log_likelihood=1.0)
+    return table.assign(angle_rad=0.0, mahalanobis=2.5, **dict.fromkeys(SIGMA_COLUMNS, 0.1))
+
+
+def test_changes_are_told_in_millimetres_and_the_estimate_itself_is_no_change(results):
+    write_table(sensitivity(), results.folder / "sensitivity.parquet", schemas.SENSITIVITY)
+    section = dependence_section(results)
+    assert "focal length + 1 sigma moves the camera most: by 40 mm and 0.00°" in section.text
+    settings = section.tables[0]
+    assert settings.rows == [["focal length + 1 sigma", "4", "+40", "+0", "+0", "0.00", "2.5"]]
+
+
+def test_the_most_influential_observation_comes_first(results):
+    (table,) = dependence_section(results).tables
+    assert [row[0] for row in table.rows] == ["without 3", "without 2", "without 1", "without 4"]
+    assert table.rows[0][-1] == "1.5"
+
+
+def test_a_platform_without_these_experiments_has_no_section(results):
+    (results.folder / "leave_one_out.parquet").unlink()
+    assert dependence_section(results) is None

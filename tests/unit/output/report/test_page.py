@@ -1,0 +1,193 @@
+"""The report read as a browser reads it: pictures, links, headings, alternative texts, tables; nothing from outside."""
+
+import base64
+import io
+import re
+from html.parser import HTMLParser
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from linepose.errors import InputError
+from linepose.output.figures.catalogue import FIGURES
+from linepose.output.report.made_with import settings_text
+from linepose.output.report.pictures import embedded
+from linepose.paper.report_sections import published_sections
+from linepose.pipeline.summary import gather_evidence, summarise, tilt_spread_deg
+from linepose.survey.observations import survey_from_table
+from unit import made_up
+from unit.output.report.made_up_page import REGRESSION
+
+VOID = {"meta", "link", "img", "br"}
+
+
+class Reader(HTMLParser):
+    """Notes every element with its attributes, and checks that each one is closed."""
+
+    def __init__(self):
+        super().__init__()
+        self.elements, self.open, self.text = [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] != "style":
+            self.text.append(data)
+
+    def all(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+@pytest.fixture(scope="module")
+def read(page):
+    reader = Reader()
+    reader.feed(page)
+    assert reader.open == []
+    return reader
+
+
+def left_out():
+    """Places of the figures that a platform of labelled views without further experiments has none of."""
+    names = [f"made-up-{entry.name}" for entry in FIGURES if entry.left_out(made_up.platform())]
+    assert {"made-up-stacked_scan", "made-up-labelled_points", "made-up-detected_points"} <= set(names)
+    return names
+
+
+def test_every_figure_is_a_picture_in_the_page_with_an_alternative_text(read):
+    images = read.all("img")
+    assert len(images) == len(FIGURES) - len(left_out())
+    for image in images:
+        head, data = image["src"].split(",", 1)
+        assert head == "data:image/png;base64"
+        with Image.open(io.BytesIO(base64.b64decode(data))) as picture:
+            picture.load()
+            assert picture.size == (int(image["width"]), int(image["height"]))
+        assert image["alt"].startswith("made-up: ")
+
+
+def test_what_is_left_out_has_its_sentence(read):
+    assert [one["id"] for one in read.all("div") if one.get("class") == "left-out"] == left_out()
+    assert "no scans" in " ".join(read.text)
+
+
+def test_every_link_leads_somewhere_in_the_page_and_names_are_unique(read):
+    names = [attributes["id"] for _, attributes in read.elements if "id" in attributes]
+    assert len(names) == len(set(names))
+    links = [one["href"] for one in read.all("a")]
+    assert links
+    assert all(link[0] == "#" and link[1:] in names for link in links)
+
+
+def test_headings_step_down_one_at_a_time(read):
+    levels = [int(tag[1]) for tag, _ in read.elements if re.fullmatch("h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(after <= before + 1 for before, after in pairwise(levels))
+
+
+def test_every_table_has_a_caption_and_heads_with_a_scope(read):
+    assert len(read.all("table")) == len(read.all("caption")) >= 5
+    assert {one["scope"] for one in read.all("th")} == {"row", "col"}
+
+
+def test_nothing_is_asked_of_the_network_and_no_place_of_this_machine_is_told(read, page, results):
+    addresses = [
+        value for _, attributes in read.elements for key, value in attributes.items() if key in ("src", "href")
+    ]
+    assert all(address.startswith(("data:", "#")) for address in addresses)
+    assert not read.all("script")
+    assert "url(" not in page
+    assert "@import" not in page
+    assert "/home/someone" not in page
+    assert ".../data" in page
+    assert str(results.folder) not in page
+
+
+def test_names_from_files_are_escaped(page):
+    assert "Fast &amp; &lt;made up&gt;" in page
+    assert "<made up>" not in page
+
+
+def test_the_page_answers_from_the_top(read):
+    text = " ".join(" ".join(read.text).split())
+    overview = text[text.index("Overview") : text.index("Can it be trusted?")]
+    assert "Use this pose with care: look at 4 of 8 checks." in overview
+    assert "r_x forward (m) 0.190 0.03" in overview  # the pose with its sigma
+    assert "Halves of the observations differ 2.0 times as much as the sigmas promise. Multiply" in overview
+    assert "The chain has 20 steps where 200 are needed. Set sampling.n_steps to 200" in overview
+    assert "Chain too short: 20 steps" in text
+    assert "Quaternion (w, x, y, z)" in text
+
+
+def test_published_numbers_are_grouped_with_their_outcome():
+    differing, made_up_section, other = published_sections(REGRESSION, {})
+    (table,) = differing.tables
+    assert [row[0] for row in table.rows] == ["made-up, Table 3, r_y_m", "made-up, notebook, neg_log_likelihood"]
+    assert [row[-1] for row in table.rows] == ["known deviation: printed wrongly", "✗ differs"]
+    assert not table.folded
+    assert differing.text.startswith("3 of 5 reproduced within the tolerance, 1 known to deviate, 1 not reproduced.")
+    assert [(table.title, table.sentence) for table in made_up_section.tables] == [
+        ("Table 3", "1 of 2 reproduced within the tolerance, 1 known to deviate."),
+        ("notebook", "0 of 1 reproduced within the tolerance, 1 not reproduced."),
+    ]
+    (single,) = other.tables
+    assert [row[0] for row in single.rows] == ["planted fault 7 removed", "planted fault 9 removed"]
+    assert [row[-1] for row in single.rows] == ["✓ passed", "✓ passed"]
+
+
+def test_notes_of_numbers_that_passed_stand_once_above_their_table():
+    noted = REGRESSION.assign(note=["simulated", "printed wrongly", "", "simulated", "simulated"])
+    _, made_up_section, other = published_sections(noted, {})
+    assert made_up_section.tables[0].sentence.endswith("1 known to deviate. Simulated.")
+    assert other.tables[0].sentence == "2 of 2 reproduced within the tolerance. Simulated."
+
+
+def test_where_everything_is_reproduced_nothing_differs():
+    titles = [section.title for section in published_sections(REGRESSION[REGRESSION["passed"]], {})]
+    assert titles == ["made-up", "other"]
+
+
+def test_settings_keep_values_and_lose_folders():
+    text = settings_text({"a": {"b": ["/x/y/z", "rel/z", 1.5]}, "n": None})
+    assert text == "a:\n  b: ['.../z', rel/z, 1.5]\nn: null"
+
+
+def test_evidence_is_gathered_from_the_results(results):
+    evidence = gather_evidence(results, summarise(results).rotation_vector)
+    assert (evidence.n_observations, evidence.n_accepted, evidence.n_steps) == (6, 4, 20)
+    assert (evidence.worst_observation, evidence.worst_error_px) == (4, 3.0)
+    assert (evidence.most_influential, evidence.influence) == (3, 1.5)
+    assert evidence.alike_in_a_view == pytest.approx(1.0)
+    assert evidence.truth_sigmas is None
+    assert evidence.undecided == ()
+    # two of the four accepted observations are rolled by 5 deg, two are not: 2.5 deg from their mean
+    assert evidence.tilt_spread_deg == pytest.approx(2.5)
+
+
+def test_tilt_spread_of_level_observations_is_zero():
+    table = made_up.observations().assign(roll_rad=0.0, pitch_rad=0.0)
+    assert tilt_spread_deg(survey_from_table(table)) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_picture_keeps_its_colours_closely(tmp_path):
+    original = np.zeros((40, 60, 3), dtype=np.uint8)
+    original[:, :20], original[:, 20:40] = (0, 114, 178), (213, 94, 0)
+    Image.fromarray(original).save(tmp_path / "flag.png")
+    picture = embedded(tmp_path / "flag.png")
+    with Image.open(io.BytesIO(base64.b64decode(picture.address.split(",")[1]))) as image:
+        shown = np.asarray(image.convert("RGB")).astype(int)
+    assert np.abs(shown - original).max() <= 8
+
+
+def test_a_broken_picture_is_named(tmp_path):
+    (tmp_path / "broken.png").write_bytes(b"\x89PNG broken")
+    with pytest.raises(InputError, match=r"broken\.png"):
+        embedded(tmp_path / "broken.png")

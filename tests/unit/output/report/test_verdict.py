@@ -1,0 +1,105 @@
+from dataclasses import replace
+
+import pytest
+
+from linepose.pipeline.verdict import Evidence, Level, judge
+
+FINE = Evidence(
+    n_observations=25,
+    n_accepted=16,
+    converged=True,
+    n_steps=5000,
+    autocorrelation_time=50.0,
+    split_r_hat=1.002,
+    reduced_chi_square=1.0,
+    alike_in_a_view=0.05,
+    tilt_spread_deg=2.7,
+    worst_observation=24,
+    worst_error_px=3.0,
+    threshold_px=5.0,
+    hand_sigmas=1.2,
+    hand_parameter="r_y right",
+    undecided=(),
+    sigma_factor=1.05,
+    most_influential=5,
+    influence=0.6,
+    truth_sigmas=1.4,
+    truth_parameter="r_z down",
+)
+
+
+def named(verdict, name):
+    return next(check for check in verdict.checks if check.name == name)
+
+
+def test_everything_in_order_says_use_it_and_asks_for_nothing():
+    verdict = judge(FINE)
+    assert verdict.level == Level.GOOD
+    assert verdict.sentence == "Use this pose: every check passed."
+    assert not any(check.advice for check in verdict.checks)
+    assert len(verdict.checks) == 9
+
+
+@pytest.mark.parametrize(
+    ("change", "name", "level", "advice"),
+    [
+        ({"converged": False}, "Convergence", Level.BAD, "start pose"),
+        ({"n_steps": 2499}, "Chain length", Level.CARE, "sampling.n_steps to 2500"),
+        ({"n_steps": 100, "autocorrelation_time": 9.5, "split_r_hat": 1.6}, "Chain length", Level.CARE, "1000 or more"),
+        ({"split_r_hat": 1.011}, "Chain length", Level.CARE, "sampling.n_steps"),
+        ({"reduced_chi_square": 1.6}, "Size of the residuals", Level.CARE, "covariances"),
+        ({"reduced_chi_square": 2.5}, "Size of the residuals", Level.BAD, "covariances"),
+        ({"reduced_chi_square": 0.44}, "Size of the residuals", Level.CARE, "columns"),
+        (
+            {"alike_in_a_view": 0.31, "sigma_factor": None},
+            "Independence within a view",
+            Level.CARE,
+            "noise_model: shared",
+        ),
+        ({"tilt_spread_deg": 1.4}, "Angular diversity", Level.CARE, "rolled or pitched"),
+        ({"undecided": ("r_z down",)}, "Angular diversity", Level.CARE, "rolled or pitched"),
+        ({"worst_error_px": 4.7}, "Worst observation", Level.CARE, "observation 24"),
+        ({"influence": 1.1}, "Worst observation", Level.CARE, "Repeat the view of observation 5"),
+        ({"hand_sigmas": 3.1}, "Hand measurement", Level.CARE, "Measure again"),
+        ({"sigma_factor": 1.7}, "Repeatability", Level.CARE, "Multiply the sigmas by 1.7"),
+        ({"truth_sigmas": 3.2}, "Truth", Level.CARE, "noise models"),
+    ],
+)
+def test_each_fault_is_named_with_what_to_do(change, name, level, advice):
+    verdict = judge(replace(FINE, **change))
+    check = named(verdict, name)
+    assert (check.level, verdict.level) == (level, level)
+    assert advice in check.advice
+    assert verdict.reasons == (check,)
+    assert check.brief
+    assert f"1 of {len(verdict.checks)} checks" in verdict.sentence
+    assert all(other.level == Level.GOOD for other in verdict.checks if other is not check)
+
+
+def test_the_papers_chain_is_called_too_short_but_not_its_pose():
+    check = named(judge(replace(FINE, n_steps=100, autocorrelation_time=9.6, split_r_hat=1.6)), "Chain length")
+    assert "Chain too short" in check.found
+    assert "The pose is not affected" in check.found
+
+
+def test_the_worst_level_decides_the_sentence():
+    verdict = judge(replace(FINE, converged=False, sigma_factor=2.0))
+    assert verdict.level == Level.BAD
+    assert verdict.sentence == "Do not use this pose yet: 1 of 9 checks failed."
+    assert [check.name for check in verdict.reasons] == ["Convergence", "Repeatability"]
+
+
+def test_what_is_not_known_is_not_judged():
+    verdict = judge(replace(FINE, sigma_factor=None, truth_sigmas=None, influence=None, most_influential=None))
+    assert {check.name for check in verdict.checks}.isdisjoint({"Repeatability", "Truth"})
+    assert "influence" not in named(verdict, "Worst observation").found
+
+
+def test_a_parameter_that_only_the_tape_knows_is_named():
+    assert "r_z down" in named(judge(replace(FINE, undecided=("r_z down",))), "Angular diversity").found
+
+
+def test_errors_in_common_do_no_harm_where_halves_agree():
+    check = named(judge(replace(FINE, alike_in_a_view=0.9, sigma_factor=1.0)), "Independence within a view")
+    assert check.level == Level.GOOD
+    assert "90 %" in check.found

@@ -1,0 +1,212 @@
+"""The Python interface: arrays in, pose and sigmas out; every example of README and docs/api.md runs."""
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pandas as pd
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import linepose
+from linepose.config.new_platform import NewPlatform, write_platform
+from linepose.config.new_project import make_project
+from linepose.config.platform import load_platform
+from linepose.pipeline.result_schemas import OBSERVATIONS, OPTIMA
+from linepose.survey.observations import COVARIANCE_COLUMNS, survey_from_table, table_from_survey
+from linepose.tables import read_table
+from unit.conftest import ROOT
+from unit.recorded_files import simulated_survey, write_platform_files
+
+BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+QUICK = linepose.CalibrationSettings(
+    threshold_px=50.0, sampling=linepose.SamplingSettings(n_walkers=24, n_burn_in=40, n_steps=60)
+)
+N_PASSES = 16
+BY_HAND = linepose.HandMeasured((0.2, 0.0, -0.8), (-56.0, 0.0, -90.0))
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    return load_platform(ROOT / "config" / "platforms", "ladybird-sim")
+
+
+@pytest.fixture(scope="module")
+def arrays(simulated):
+    """What an engineer has: arrays with one row a point seen, of the first passes."""
+    survey = simulated_survey(simulated, N_PASSES)
+    row, point = np.nonzero(np.isfinite(survey.u_px))
+    return {
+        "observation": survey.number[row],
+        "point": point,
+        "u_px": survey.u_px[row, point],
+        "position_m": survey.position_m[row, point] + survey.origin_m,
+        "euler_rad": survey.euler_rad[row, point],
+        "covariance": survey.covariance[0, 0],
+    }
+
+
+@pytest.fixture(scope="module")
+def calibration(simulated, arrays):
+    observations = linepose.observations_from_arrays(**arrays)
+    return linepose.calibrate(observations, simulated.intrinsics(), BY_HAND, QUICK)
+
+
+def test_import_loads_nothing_heavy():
+    code = "import sys, linepose; linepose.__doc__; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert not {"numpy", "pandas", "numba", "scipy", "matplotlib", "pydantic", "snakemake"} & set(loaded)
+
+
+def test_every_public_name_is_there_and_told_to_type_checkers():
+    stub = (ROOT / "src" / "linepose" / "__init__.pyi").read_text()
+    assert set(linepose.__all__) == set(re.findall(r" as (\w+)$", stub, re.MULTILINE))
+    for name in linepose.__all__:
+        assert getattr(linepose, name).__module__.startswith("linepose.")
+    with pytest.raises(AttributeError, match="calibrat"):
+        _ = linepose.calibrat  # type: ignore[attr-defined]
+
+
+def test_calibration_never_imports_snakemake(arrays):
+    code = (
+        "import sys, linepose; linepose.calibrate_platform; linepose.check_platform; print('snakemake' in sys.modules)"
+    )
+    assert "False" in subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+
+
+def test_arrays_become_the_survey_that_they_came_from(simulated, arrays):
+    survey = simulated_survey(simulated, N_PASSES)
+    again = survey_from_table(linepose.observations_from_arrays(**arrays))
+    assert_array_equal(again.number, survey.number)
+    assert_allclose(again.u_px, survey.u_px)
+    assert_allclose(again.position_m + again.origin_m, survey.position_m + survey.origin_m, atol=1e-8)
+    seen = np.isfinite(survey.u_px)
+    assert_allclose(again.covariance[seen], survey.covariance[seen])
+
+
+def test_pose_is_that_of_the_simulation(simulated, calibration):
+    """Within four sigmas, which the published model states too wide here (its errors are half of those reported)."""
+    difference = np.abs(calibration.pose - np.array(simulated.simulation.true_pose))
+    assert np.all(difference < 4 * calibration.sigma)
+    assert calibration.outliers == []
+    assert calibration.inliers == list(range(1, N_PASSES + 1))
+
+
+def test_rotation_is_the_same_in_every_representation(calibration):
+    from scipy.spatial.transform import Rotation
+
+    rotation = Rotation.from_rotvec(calibration.pose[3:])
+    assert_allclose(calibration.matrix[:3, :3], rotation.as_matrix(), atol=1e-14)
+    assert_allclose(calibration.matrix[:3, 3], calibration.pose[:3])
+    assert_allclose(calibration.euler_deg, rotation.as_euler("ZYX", degrees=True)[::-1], atol=1e-9)
+    assert_allclose(calibration.quaternion_wxyz, rotation.as_quat(canonical=True, scalar_first=True), atol=1e-14)
+
+
+def test_euler_sigmas_are_those_of_the_samples(calibration):
+    """To first order against the samples' own spread: within 5 % for sigmas of a degree."""
+    from scipy.spatial.transform import Rotation
+
+    vectors = calibration.samples[["theta_x_rad", "theta_y_rad", "theta_z_rad"]].to_numpy(copy=True)
+    euler = Rotation.from_rotvec(vectors).as_euler("ZYX", degrees=True)[:, ::-1]
+    assert_allclose(calibration.sigma_euler_deg, euler.std(axis=0, ddof=1), rtol=0.05)
+
+
+def test_tables_are_written_as_the_workflow_does(calibration, tmp_path):
+    calibration.write(tmp_path)
+    assert len(read_table(tmp_path / "observations.parquet", OBSERVATIONS)) == len(calibration.observations)
+    assert (
+        read_table(tmp_path / "optima.parquet", OPTIMA).loc[0, "neg_log_likelihood"] == calibration.neg_log_likelihood
+    )
+    assert (tmp_path / "mcmc" / "inliers.parquet").is_file()
+
+
+def test_calibration_tells_itself_to_people(calibration):
+    told = str(calibration)
+    assert "forward" in told
+    assert f"{calibration.euler_deg[2]:.4f}" in told
+    assert calibration.verdict().sentence in told
+
+
+def test_bad_observation_is_removed(simulated, arrays):
+    spoilt = dict(arrays)
+    spoilt["u_px"] = np.where(arrays["observation"] == 5, arrays["u_px"] + 40.0, arrays["u_px"])
+    settings = linepose.CalibrationSettings(sampling=QUICK.sampling)
+    observations = linepose.observations_from_arrays(**spoilt)
+    assert linepose.calibrate(observations, simulated.intrinsics(), BY_HAND, settings).outliers[:1] == [5]
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "told"),
+    [
+        ("euler_rad", np.degrees, "convert degrees"),
+        ("position_m", lambda a: a[:-1], r"position_m: found shape \(239, 3\), expected shape \(240, 3\)"),
+        ("u_px", lambda a: np.where(np.arange(len(a)) == 3, np.nan, a), "u_px, row 3.*leave out"),
+        ("point", lambda a: a + 0.5, "point, row 0.*whole number"),
+        ("point", lambda a: a * 0, "point 0 of observation 1 again"),
+        ("covariance", lambda a: a + np.eye(6, k=1), "covariance, row 0.*not symmetric"),
+        ("covariance", lambda a: -a, "covariance, row 0.*negative"),
+    ],
+)
+def test_wrong_array_is_named(arrays, name, change, told):
+    with pytest.raises(linepose.InputError, match=told):
+        linepose.observations_from_arrays(**(arrays | {name: change(np.asarray(arrays[name], dtype=float))}))
+
+
+def test_table_without_a_column_says_how_it_is_made(simulated):
+    with pytest.raises(linepose.InputError, match="observations_from_arrays"):
+        linepose.calibrate(pd.DataFrame({"observation": [1]}), simulated.intrinsics(), BY_HAND)
+
+
+def test_unknown_noise_model_lists_the_known(simulated, arrays):
+    settings = linepose.CalibrationSettings(noise_model="publisched")
+    with pytest.raises(linepose.InputError, match="expected one of published"):
+        linepose.calibrate(linepose.observations_from_arrays(**arrays), simulated.intrinsics(), BY_HAND, settings)
+
+
+def test_hand_measurement_without_sigmas_is_refused():
+    with pytest.raises(linepose.InputError, match="positive"):
+        _ = linepose.HandMeasured((0, 0, 0), (0, 0, 0), sigma_position_m=0.0).covariance
+
+
+def test_times_and_gaps_may_be_left_out(simulated, arrays):
+    observations = linepose.observations_from_arrays(**arrays)
+    kept = observations[["observation", "point", "u_px", "north_m", "east_m", "down_m", "roll_rad", "pitch_rad"]]
+    kept = kept.assign(yaw_rad=observations["yaw_rad"], **{name: observations[name] for name in COVARIANCE_COLUMNS})
+    assert_array_equal(
+        linepose.calibrate(kept, simulated.intrinsics(), BY_HAND, QUICK).pose,
+        linepose.calibrate(observations, simulated.intrinsics(), BY_HAND, QUICK).pose,
+    )
+
+
+@pytest.fixture
+def myrobot(simulated, arrays, tmp_path, monkeypatch):
+    """A folder with the arrays and the project that the examples speak of."""
+    make_project(tmp_path, "myrobot")
+    new = NewPlatform("myrobot", 8.2e-3, 7.407407407e-6, 648, BY_HAND.position_m, BY_HAND.euler_deg, 323.0)
+    write_platform(tmp_path / "config" / "platforms", new)
+    write_platform_files(tmp_path / "data" / "myrobot", simulated, N_PASSES)
+    config = tmp_path / "config" / "config.yaml"
+    config.write_text(config.read_text() + "sampling: {n_walkers: 24, n_burn_in: 40, n_steps: 60}\n")
+    np.savez(tmp_path / "myrobot.npz", **arrays)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_observations_of_a_platform_are_those_of_its_files(simulated, myrobot):
+    expected = table_from_survey(simulated_survey(simulated, N_PASSES))
+    observations = linepose.load_observations("myrobot")
+    assert_allclose(observations["u_px"], expected["u_px"], atol=1e-3)
+    assert_allclose(observations["north_m"], expected["north_m"], atol=1e-5)
+    assert_allclose(observations["covariance_yaw_yaw"], expected["covariance_yaw_yaw"], rtol=1e-6)
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/api.md"])
+def test_examples_run(page, myrobot, capsys):
+    blocks = BLOCK.findall((ROOT / page).read_text())
+    assert blocks
+    namespace: dict[str, object] = {}
+    for block in blocks:
+        exec(compile(block, page, "exec"), namespace)
+    assert "observations removed" in capsys.readouterr().out
+    assert namespace["body_from_camera"].shape == (4, 4)
