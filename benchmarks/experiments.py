@@ -37,7 +37,10 @@ def kernel_share(sweep: Sweep, cells: range) -> float:
     begun = time.process_time()
     table = sweep.rows("powell", cells)
     total = time.process_time() - begun
-    model, poses = sweep.likelihood.mirrored(), table[[name for name in table if name[:2] in ("r_", "th")]].to_numpy()
+    model, poses = (
+        sweep.likelihood.without_cheirality(),
+        table[[name for name in table if name[:2] in ("r_", "th")]].to_numpy(),
+    )
     begun, rounds = time.process_time(), 2000 // len(poses)
     for _ in range(rounds):
         for pose in poses:

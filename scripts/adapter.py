@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from linepose.errors import LineposeError
-from linepose.pipeline.parent_process import end_with
+from linepose.pipeline.parent_process import exit_with_parent
 
 _HUSHED = ("numba", "matplotlib", "fontTools", "PIL")
 
@@ -20,7 +20,7 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     `job` is the `snakemake` object of the script. Tracebacks of unforeseen faults go to the log and the terminal.
     When Snakemake is killed the job ends too, or it would be in the way of the run that goes on.
     """
-    end_with(os.getppid())
+    exit_with_parent(os.getppid())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(job.threads))
     log = logging.getLogger(f"linepose.{job.rule}")
     logging.basicConfig(

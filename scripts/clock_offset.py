@@ -8,10 +8,10 @@ with stage(snakemake) as log:
     from linepose.config.experiments import ClockOffsetSection
     from linepose.config.platform import Platform
     from linepose.config.study import SearchSection, sampling_settings
-    from linepose.estimation.noise_models import likelihoods_alike
+    from linepose.estimation.noise_models import likelihood_factory
     from linepose.estimation.sampling import stage_seed
     from linepose.experiments.accepted import read_accepted, read_reference
-    from linepose.experiments.clock_offset import Without, estimate_clock_offset
+    from linepose.experiments.clock_offset import PoseWithoutOffset, estimate_clock_offset
     from linepose.experiments.schemas import CLOCK_OFFSET
     from linepose.likelihood.clock_offset import with_clock_offset
     from linepose.pipeline.load import read_log
@@ -24,9 +24,9 @@ with stage(snakemake) as log:
     settings = sampling_settings(snakemake.params.sampling)
     accepted = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers).accepted
     reference = read_reference(accepted, snakemake.input.optima, snakemake.input.samples)
-    without = Without(reference.pose, reference.covariance, -accepted.log_likelihood(reference.parameters))
+    without = PoseWithoutOffset(reference.pose, reference.covariance, -accepted.log_likelihood(reference.parameters))
     raw_log = read_log(platform, Path(snakemake.params.folder))
-    model = likelihoods_alike(
+    model = likelihood_factory(
         platform.noise_model, accepted.survey, platform.intrinsics(), platform.start_pose(), platform.pose_prior()
     )
     likelihood = with_clock_offset(accepted.survey, raw_log, maximum_s, model)

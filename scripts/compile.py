@@ -4,10 +4,10 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.estimation.warm_up import warm_up
-    from linepose.tables import whole_file
+    from linepose.tables import atomic_write
 
     noise_model = snakemake.wildcards.noise_model
     warm_up(noise_model)
-    with whole_file(snakemake.output[0]) as path:
+    with atomic_write(snakemake.output[0]) as path:
         path.write_text(f"{noise_model}\n", encoding="utf-8")
     log.info("compiled: %s", noise_model)

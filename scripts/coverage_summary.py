@@ -11,7 +11,7 @@ with stage(snakemake) as log:
     from linepose.experiments.coverage_table import coverage_table
     from linepose.output.figures import coverage as figures
     from linepose.output.figures.style import save
-    from linepose.tables import read_table, whole_file, write_csv, write_table
+    from linepose.tables import atomic_write, read_table, write_csv, write_table
 
     cells = [read_table(path, COVERAGE_SURVEYS) for path in snakemake.input.cells]
     surveys = pd.concat([cell.astype(cells[0].dtypes) for cell in cells], ignore_index=True)
@@ -20,7 +20,7 @@ with stage(snakemake) as log:
     write_table(curve, snakemake.output.coverage, COVERAGE)
     write_table(summary, snakemake.output.summary, COVERAGE_SUMMARY)
     write_csv(summary, snakemake.output.csv)
-    with whole_file(snakemake.output.table) as path:
+    with atomic_write(snakemake.output.table) as path:
         path.write_text(coverage_table(summary), encoding="utf-8")
     folder = Path(snakemake.output.figures)
     save(figures.coverage(curve), folder / "coverage")

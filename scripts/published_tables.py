@@ -9,7 +9,7 @@ with stage(snakemake) as log:
     from linepose.experiments.schemas import PUBLISHED_NAVIGATION, PUBLISHED_POSES, REPEATABILITY, SUBSETS
     from linepose.paper.tables import markdown, published_tables
     from linepose.pipeline.result_schemas import NAVIGATION_SIGMA, POSE
-    from linepose.tables import read_table, whole_file, write_csv, write_table
+    from linepose.tables import atomic_write, read_table, write_csv, write_table
 
     tables = published_tables(
         snakemake.params.platform,
@@ -23,7 +23,7 @@ with stage(snakemake) as log:
     for name, table in tables.items():
         write_table(table, folder / f"{name}.parquet", PUBLISHED_NAVIGATION if name == "table2" else PUBLISHED_POSES)
         write_csv(table, folder / f"{name}.csv")
-        with whole_file(folder / f"{name}.md") as path:
+        with atomic_write(folder / f"{name}.md") as path:
             path.write_text(markdown(table, f"Table {name[-1]}, published and obtained"), encoding="utf-8")
     worst = max(table["difference_sigmas"].abs().max() for table in tables.values() if "difference_sigmas" in table)
     log.info("largest difference of a pose: %.2f published sigmas", worst)

@@ -8,11 +8,11 @@ with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.output.figures.results import PlatformResults
     from linepose.output.report.assemble import platform_on_page
-    from linepose.output.report.made_with import settings_text, versions
     from linepose.output.report.page import render_page
+    from linepose.output.report.provenance import settings_text, versions
     from linepose.paper.report_sections import published_sections
     from linepose.pipeline.result_schemas import REGRESSION
-    from linepose.tables import read_table, whole_file
+    from linepose.tables import atomic_write, read_table
 
     platforms = []
     for name, values in snakemake.params.platforms.items():
@@ -33,6 +33,6 @@ with stage(snakemake) as log:
         settings_text(snakemake.params.study),
         versions(),
     )
-    with whole_file(snakemake.output[0]) as path:
+    with atomic_write(snakemake.output[0]) as path:
         path.write_text(page, encoding="utf-8")
     log.info("%s: %.1f MB", snakemake.output[0], len(page.encode()) / 1e6)

@@ -14,7 +14,7 @@ from linepose.errors import InputError
 
 
 @contextmanager
-def whole_file(path: Path | str) -> Iterator[Path]:
+def atomic_write(path: Path | str) -> Iterator[Path]:
     """A temporary path beside `path` that takes its place when the block ends well, and vanishes otherwise."""
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -39,7 +39,7 @@ def write_table(table: pd.DataFrame, path: Path | str, schema: pa.Schema) -> Non
     unknown = set(table.columns) - set(schema.names)
     if unknown:
         raise InputError(str(path), f"columns {sorted(unknown)}", f"columns {schema.names}", "mend the result")
-    with whole_file(path) as temporary:
+    with atomic_write(path) as temporary:
         pq.write_table(arrow.replace_schema_metadata(None), temporary, compression="zstd")
 
 
@@ -59,5 +59,5 @@ def read_table(path: Path | str, schema: pa.Schema | None = None) -> pd.DataFram
 
 def write_csv(table: pd.DataFrame, path: Path | str) -> None:
     """Write a table as CSV for people and spreadsheets, ten significant digits."""
-    with whole_file(path) as temporary:
+    with atomic_write(path) as temporary:
         table.to_csv(temporary, index=False, float_format="%.10g", lineterminator="\n")

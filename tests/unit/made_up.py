@@ -329,7 +329,7 @@ def clock_offset() -> pd.DataFrame:
     row |= {f"{name}_without": value for name, value in pose.items()} | {"neg_log_likelihood_without": 12.5}
     row |= {
         "mahalanobis": 1.2,
-        "told_apart": True,
+        "identifiable": True,
         "verdict": "The camera's clock is behind.",
         "advice": "Add 30000 us.",
     }

@@ -7,7 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from linepose.errors import InputError
-from linepose.tables import read_table, whole_file, write_csv, write_table
+from linepose.tables import atomic_write, read_table, write_csv, write_table
 
 SCHEMA = pa.schema([pa.field("point", pa.int64(), nullable=False), pa.field("u_px", pa.float64(), nullable=False)])
 TABLE = pd.DataFrame({"u_px": [0.1, np.inf, -3.0], "point": [0, 1, 2]})
@@ -93,7 +93,7 @@ def test_interruption_in_the_middle_leaves_the_earlier_result(earlier, monkeypat
 
 def test_interrupted_first_result_leaves_nothing(tmp_path):
     def interrupted():
-        with whole_file(tmp_path / "new.txt") as temporary:
+        with atomic_write(tmp_path / "new.txt") as temporary:
             temporary.write_text("half")
             raise RuntimeError
 
@@ -103,7 +103,7 @@ def test_interrupted_first_result_leaves_nothing(tmp_path):
 
 
 def test_until_the_block_ends_the_earlier_result_stands(earlier):
-    with whole_file(earlier) as temporary:
+    with atomic_write(earlier) as temporary:
         temporary.write_bytes(b"new")
         assert earlier.read_bytes() == OLD
         assert temporary.suffix == earlier.suffix

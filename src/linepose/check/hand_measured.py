@@ -33,7 +33,7 @@ def hand_findings(survey: Survey, camera: Camera, pose: Floats, covariance: Floa
         findings.append(
             warning(_SUBJECT, found, "give hand_measured.position_m in metres, from the navigation's origin")
         )
-    residuals = PublishedLikelihood(survey, camera).mirrored().residuals(pose)
+    residuals = PublishedLikelihood(survey, camera).without_cheirality().residuals(pose)
     distance = in_camera(pose, survey.position_m, survey.euler_rad, residuals.point_m)[..., 2]
     seen = np.isfinite(residuals.error_px)
     behind = seen & (distance <= 0)

@@ -14,7 +14,7 @@ from linepose.errors import EstimationError, LineposeError
 from linepose.estimation.identifiability import WORDS, identifiability, in_body_axes
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.geometry.rotations import small_rotation_by_rotation_vector
+from linepose.geometry.rotations import left_jacobian_so3
 from linepose.survey.observations import Survey
 
 TOO_LARGE: Final = 0.5  # of the hand measurement's sigma
@@ -93,7 +93,7 @@ def _shared_sigma(ideal: Survey, camera: Camera, pose: Floats) -> Floats | None:
 def _axis_of_pose(pose: Floats) -> Floats:
     """Rows (6, 6): each number in body axes as a combination of the pose's parameters."""
     rows = np.eye(6)
-    rows[3:, 3:] = small_rotation_by_rotation_vector(pose[3:6])
+    rows[3:, 3:] = left_jacobian_so3(pose[3:6])
     return rows
 
 

@@ -188,7 +188,7 @@ SECTIONS: Final[dict[str, type[NavigationFormatSection]]] = {
 }
 
 
-def brought_format(name: str) -> NavigationFormat:
+def plugin_format(name: str) -> NavigationFormat:
     """The format of this name that another package brings; raises InputError naming the nearest known one."""
     brought = {point.name: point for point in entry_points(group=GROUP)}
     if name not in brought:
@@ -223,7 +223,7 @@ def _brought_section(value: Any) -> NavigationFormatSection:
         expected = f"one of {', '.join(SECTIONS)}"
         raise InputError("source.navigation.format", repr(value.get("format")), expected, "add or correct it")
     try:
-        return validated(brought_format(value["format"]).section, value, "source.navigation")
+        return validated(plugin_format(value["format"]).section, value, "source.navigation")
     except InputError as error:
         place = error.place.replace("source.navigation: ", "source.navigation.")
         raise InputError(place, error.found, error.expected, error.remedy) from None

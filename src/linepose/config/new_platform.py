@@ -11,7 +11,7 @@ import yaml
 from linepose.config.platform import CameraSection, HandMeasuredSection, NavigationSection, Platform, SigmasSection
 from linepose.config.schema import validated
 from linepose.errors import InputError
-from linepose.tables import whole_file
+from linepose.tables import atomic_write
 
 Triple = tuple[float, float, float]
 _NAME: Final = re.compile(r"[A-Za-z0-9_-]+")
@@ -62,7 +62,7 @@ def write_platform(folder: Path, new: NewPlatform, overwrite: bool = False) -> P
     if path.exists() and not overwrite:
         raise InputError(str(path), "a platform of this name", "a new name", "choose another, or give --force")
     text = platform_text(new)
-    with whole_file(path) as temporary:
+    with atomic_write(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return path
 

@@ -9,7 +9,7 @@ from ruamel.yaml.error import YAMLError
 
 from linepose.errors import InputError
 from linepose.pipeline.project_folder import CONFIG
-from linepose.tables import whole_file
+from linepose.tables import atomic_write
 
 _STUDY: Final = """# What is run. Every key, its unit and default: docs/configuration.md
 
@@ -25,7 +25,7 @@ seed: 2017 # every random number follows from it
 
 def make_project(root: Path, platform: str) -> Path:
     """Write a minimal project with one platform into a folder that has none: its config.yaml."""
-    with whole_file(root / CONFIG) as temporary:
+    with atomic_write(root / CONFIG) as temporary:
         temporary.write_text(_STUDY.format(name=platform), encoding="utf-8")
     (root / "data").mkdir(exist_ok=True)
     return root / CONFIG
@@ -52,7 +52,7 @@ def add_platform(config: Path, platform: str) -> bool:
     _append(platforms, platform)
     text = io.StringIO()
     yaml.dump(values, text)
-    with whole_file(config) as temporary:
+    with atomic_write(config) as temporary:
         temporary.write_text(text.getvalue(), encoding="utf-8")
     return True
 

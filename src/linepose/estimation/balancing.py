@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.estimation.optimise import climb
+from linepose.estimation.optimise import minimise
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS, check_pose
-from linepose.likelihood.balanced import BalancedLikelihood, Refer, Reference
+from linepose.likelihood.balanced import BalancedLikelihood, FindReference, Reference
 from linepose.likelihood.shared import SharedPriors
 from linepose.likelihood.shared_kernel import Levels, levels_at
 from linepose.survey.observations import Survey
@@ -40,7 +40,7 @@ class _AtReference(BalancedLikelihood):
         return np.array([self.log_likelihood(row) for row in np.asarray(parameters, dtype=float)])
 
 
-def reference_from(start_pose: ArrayLike) -> Refer:
+def reference_from(start_pose: ArrayLike) -> FindReference:
     """What finds the reference of a survey from a start pose (6,), the hand-measured one."""
     start = check_pose(start_pose, "start pose")
 
@@ -49,7 +49,7 @@ def reference_from(start_pose: ArrayLike) -> Refer:
         parameters: Floats | None = None
         for _ in range(N_REPETITIONS):
             likelihood = _AtReference(survey, camera, reference)
-            found = climb(likelihood, likelihood.start(start) if parameters is None else parameters, start)
+            found = minimise(likelihood, likelihood.start(start) if parameters is None else parameters, start)
             following = Reference(found.parameters[:N_PARAMETERS], levels_at(found.parameters))
             try:
                 _AtReference(survey, camera, following)

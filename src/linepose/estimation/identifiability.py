@@ -119,7 +119,7 @@ def in_body_axes(names: Sequence[str], parameters: ArrayLike, covariance: ArrayL
     """
     vector = np.asarray(parameters, dtype=float)
     jacobian = np.eye(len(vector))
-    jacobian[3:6, 3:6] = rotations.small_rotation_by_rotation_vector(vector[3:6])
+    jacobian[3:6, 3:6] = rotations.left_jacobian_so3(vector[3:6])
     return (*names[:3], *TURN_NAMES, *names[6:]), jacobian @ np.asarray(covariance, dtype=float) @ jacobian.T
 
 

@@ -35,7 +35,7 @@ def likelihood_of(
     return likelihood if prior is None else WithPrior(likelihood, prior)
 
 
-def likelihoods_alike(
+def likelihood_factory(
     noise_model: str, survey: Survey, camera: Camera, start_pose: ArrayLike, prior: PosePrior | None = None
 ) -> Callable[[Survey], Likelihood]:
     """What makes the likelihood of a survey as this one with body poses that differ a little, by their clocks.

@@ -73,7 +73,7 @@ def optimise_within(
     """The same from parameters (P,), within `centre +- half_width` (P,) each."""
     if likelihood.n_parameters == N_PARAMETERS:
         return _powell(likelihood, start, centre, half_width, search)
-    cheaper = likelihood.approach()
+    cheaper = likelihood.surrogate()
     if cheaper is not likelihood:
         first = optimise_within(cheaper, start, centre, half_width, search)
     else:
@@ -109,7 +109,7 @@ def _powell(likelihood: Likelihood, start: Floats, centre: Floats, half_width: F
     )
 
 
-def climb(likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, search: Search | None = None) -> Optimum:
+def minimise(likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, search: Search | None = None) -> Optimum:
     """The optimum that BFGS reaches from parameters (P,) near it, within the same range around a start pose (6,).
 
     Gradients are central differences, in one batch. Raises InputError for a start that is not finite.
@@ -151,7 +151,7 @@ def laplace_covariance(likelihood: Likelihood, optimum: ArrayLike) -> Floats:
     """Covariance (P, P) from the curvature of -log L at its minimum (P,).
 
     Central differences twice: first along the parameters, the pose's with a step of 1e-5 and each other with a
-    hundredth of its scatter (1e-5 of a pixel would drown in rounding), good for a fraction of a per cent;
+    hundredth of its initial walker sigma (1e-5 of a pixel would drown in rounding), good for a fraction of a per cent;
     then along the principal axes that this gave with a hundredth of each axis's sigma. There the rounding error is
     1e-9 and the truncation error 1e-4 of the fourth derivative's share; along the parameters themselves such a step
     would leave the minimum's neighbourhood, because they are strongly correlated.
@@ -159,7 +159,7 @@ def laplace_covariance(likelihood: Likelihood, optimum: ArrayLike) -> Floats:
     that the data leave open.
     """
     parameters = np.asarray(optimum, dtype=float)
-    axes = 1e-2 * np.diag(likelihood.scatter(1e-3, 1e-3))
+    axes = 1e-2 * np.diag(likelihood.initial_walker_sigma(1e-3, 1e-3))
     for scale, lowest in ((1e-2, 0.0), (1.0, 0.1 * 1e-2**2)):  # the second time each curvature is about 1e-2 squared
         curvature, directions = np.linalg.eigh(_hessian(likelihood, parameters, axes))
         if curvature[0] <= lowest:

@@ -26,7 +26,7 @@ def search_as_published(likelihood: Likelihood, start: Floats, search: Search) -
     centre = first.copy()
     centre[3:N_PARAMETERS] = 0.0
     half_width = likelihood.half_widths(search.half_width_m, np.pi)
-    return optimise_within(likelihood.mirrored(), first, centre, half_width, search)
+    return optimise_within(likelihood.without_cheirality(), first, centre, half_width, search)
 
 
 OPTIMISERS: Final[dict[str, Optimiser]] = {

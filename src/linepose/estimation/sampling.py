@@ -93,8 +93,8 @@ def sample(
     if isinstance(settings, IndependenceSettings):
         start, moves = _fitted_proposals(likelihood, centre, random, settings, show_progress)
     else:
-        scatter = likelihood.scatter(settings.start_sigma_m, settings.start_sigma_rad)
-        start = centre + scatter * random.standard_normal((settings.n_walkers, len(scatter)))
+        walker_sigma = likelihood.initial_walker_sigma(settings.start_sigma_m, settings.start_sigma_rad)
+        start = centre + walker_sigma * random.standard_normal((settings.n_walkers, len(walker_sigma)))
         moves = emcee.moves.StretchMove(a=settings.stretch_scale)
         if settings.n_burn_in:
             start = _ensemble(likelihood, start, moves, random, settings.n_burn_in, show_progress).get_last_sample()
@@ -152,7 +152,7 @@ def _fitted_proposals(
         covariance = laplace_covariance(likelihood, optimum)
         moves = [(independence_move(optimum, covariance), share), *evolution]
     except EstimationError:
-        covariance = np.diag(likelihood.scatter(_OPEN_M, _OPEN_RAD) ** 2)
+        covariance = np.diag(likelihood.initial_walker_sigma(_OPEN_M, _OPEN_RAD) ** 2)
         moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
     scatter = np.linalg.cholesky(covariance)
     state: Floats | emcee.State = optimum + random.standard_normal((settings.n_walkers, len(optimum))) @ scatter.T

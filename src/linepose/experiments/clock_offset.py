@@ -27,7 +27,7 @@ from linepose.pipeline.stages import sample_table
 _logger = logging.getLogger(__name__)
 
 CORRELATION_COLUMNS: Final = tuple(f"correlation_{name.rsplit('_', 1)[0]}" for name in (*POSE_COLUMNS, *TURN_NAMES))
-TOLD_APART: Final = 0.75  # of the shrinkage: the sigma is half of what it was before any data
+IDENTIFIABLE_SHRINKAGE: Final = 0.75  # of the shrinkage: the sigma is half of what it was before any data
 MOST_COMMON: Final = 0.98  # correlation with the whole pose, where a sigma is five times what it is with the pose known
 LINKED: Final = 0.9  # correlation with the pose, from which it is the pose that hides the offset, and not the noise
 NOTABLE: Final = 3.0  # sigmas from zero
@@ -44,7 +44,7 @@ _WORDS: Final = {
 
 
 @dataclass(frozen=True)
-class Without:
+class PoseWithoutOffset:
     """The estimate with clocks taken to agree: pose (6,), its covariance (6, 6), and -log L there."""
 
     pose: Floats
@@ -54,7 +54,7 @@ class Without:
 
 def estimate_clock_offset(
     likelihood: ClockOffsetLikelihood,
-    without: Without,
+    without: PoseWithoutOffset,
     start: ArrayLike,
     seed: int,
     search: Search | None = None,
@@ -84,7 +84,7 @@ def estimate_clock_offset(
     shrinkage = 1 - sigma_s**2 / (likelihood.maximum_s**2 / 3)
     pose = optimum.parameters[:N_PARAMETERS]
     moved = float(mahalanobis_distance(pose, without.pose, without.covariance))
-    told = Told(offset_s, sigma_s, likelihood.maximum_s, shrinkage, with_pose, correlation, moved)
+    evidence = ClockOffsetEvidence(offset_s, sigma_s, likelihood.maximum_s, shrinkage, with_pose, correlation, moved)
     row = {
         "n_observations": likelihood.survey.n_observations,
         "observations": observation_list(likelihood.survey.number),
@@ -100,9 +100,9 @@ def estimate_clock_offset(
         **_pose("", pose, np.sqrt(np.diag(covariance)[:N_PARAMETERS]), optimum.neg_log_likelihood),
         **_pose("_without", without.pose, np.sqrt(np.diag(without.covariance)), without.neg_log_likelihood),
         "mahalanobis": moved,
-        "told_apart": told.is_told_apart(),
-        "verdict": told.verdict(),
-        "advice": told.advice(),
+        "identifiable": evidence.is_identifiable(),
+        "verdict": evidence.verdict(),
+        "advice": evidence.advice(),
     }
     return pd.DataFrame([row]), sample_table(chain, names)
 
@@ -127,7 +127,7 @@ def correlation_with_all(covariance: ArrayLike) -> float:
 
 
 @dataclass(frozen=True)
-class Told:
+class ClockOffsetEvidence:
     """What is known of the offset, and how to say it."""
 
     offset_s: float
@@ -138,16 +138,16 @@ class Told:
     correlation: dict[str, float]
     mahalanobis: float
 
-    def is_told_apart(self) -> bool:
+    def is_identifiable(self) -> bool:
         """Whether the data tell the offset from the pose."""
         inside = abs(self.offset_s) < _LARGEST * self.maximum_s
-        return self.shrinkage >= TOLD_APART and self.correlation_pose < MOST_COMMON and inside
+        return self.shrinkage >= IDENTIFIABLE_SHRINKAGE and self.correlation_pose < MOST_COMMON and inside
 
     def verdict(self) -> str:
         """One or two sentences: what the offset is, or why it is not known."""
         found = f"{1e3 * self.offset_s:.1f} ± {1e3 * self.sigma_s:.1f} ms"
-        if not self.is_told_apart():
-            if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= TOLD_APART:
+        if not self.is_identifiable():
+            if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= IDENTIFIABLE_SHRINKAGE:
                 return f"The clock offset is at the end of its range: {found} of ±{1e3 * self.maximum_s:g} ms."
             if self.correlation_pose < LINKED:
                 return (
@@ -167,8 +167,8 @@ class Told:
 
     def advice(self) -> str:
         """What to do; empty where there is nothing to do."""
-        if not self.is_told_apart():
-            if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= TOLD_APART:
+        if not self.is_identifiable():
+            if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= IDENTIFIABLE_SHRINKAGE:
                 return "Raise experiments.clock_offset.maximum_s, and check in which time scale each clock runs."
             if self.correlation_pose < LINKED:
                 return (

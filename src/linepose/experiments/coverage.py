@@ -20,7 +20,7 @@ from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
 from linepose.estimation.balancing import balanced
 from linepose.estimation.importance import WeightedSamples, importance_samples
-from linepose.estimation.optimise import Optimum, climb, laplace_covariance
+from linepose.estimation.optimise import Optimum, laplace_covariance, minimise
 from linepose.experiments.coverage_survey import NoiseLevels, draw_survey, levels_from_prior
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
@@ -117,7 +117,7 @@ def estimate_row(
     An estimate that fails (the curvature leaves a direction open) has no region and so does not hold the truth: its
     credibilities are 1, and what it has no number for is NaN.
     """
-    found = climb(likelihood, likelihood.start(start_pose), start_pose)
+    found = minimise(likelihood, likelihood.start(start_pose), start_pose)
     row = failed_row(found)
     try:
         covariance = laplace_covariance(likelihood, found.parameters)

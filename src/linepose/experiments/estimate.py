@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
-from linepose.estimation.optimise import Optimum, Search, climb, laplace_covariance, optimise
+from linepose.estimation.optimise import Optimum, Search, laplace_covariance, minimise, optimise
 from linepose.estimation.sampling import IndependenceSettings, SamplingSettings, sample
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
@@ -73,7 +73,7 @@ def estimate_nearby(
 
     The search's range lies around the start pose (6,).
     """
-    optimum = climb(likelihood, parameters, start, search)
+    optimum = minimise(likelihood, parameters, start, search)
     return _estimate(likelihood, optimum, _curvature_or_nan(likelihood, optimum))
 
 

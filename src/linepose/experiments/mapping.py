@@ -14,12 +14,12 @@ from linepose.geometry.camera import Camera, rays, undistort
 from linepose.geometry.plane import Plane, fit_plane_by_height, intersect
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.rotations import (
+    left_jacobian_so3,
     matrix_from_euler,
     matrix_from_rotation_vector,
     rotation_vector_from_matrix,
     skew,
     small_rotation_by_euler,
-    small_rotation_by_rotation_vector,
 )
 from linepose.survey.observations import Survey
 
@@ -58,7 +58,7 @@ def projection_covariance(
     total = np.zeros((*reach.shape, 3, 3))
 
     # camera pose: the centre moves by R_wb dr, the direction turns in the body frame
-    turn = small_rotation_by_rotation_vector(pose[3:])
+    turn = left_jacobian_so3(pose[3:])
     by_pose = np.concatenate([body, -reach[..., None, None] * body @ skew(seen) @ turn], axis=-1)
     total += _quadratic(onto @ by_pose, np.asarray(pose_covariance, dtype=float)[:N_PARAMETERS, :N_PARAMETERS])
 

@@ -145,7 +145,7 @@ CLOCK_OFFSET: Final = pa.schema(
         *floats("maximum_s", "shrinkage", "correlation_pose", *CORRELATION_COLUMNS),
         *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
         *floats(*(f"{name}_without" for name in (*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood")), "mahalanobis"),
-        *flags("told_apart"),
+        *flags("identifiable"),
         *texts("verdict", "advice"),
     ]
 )

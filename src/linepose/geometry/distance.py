@@ -12,7 +12,7 @@ from scipy.stats import chi2
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
 from linepose.geometry.pose import N_PARAMETERS
-from linepose.geometry.rotations import small_rotation_by_rotation_vector
+from linepose.geometry.rotations import left_jacobian_so3
 
 _SINGULAR = 1e-12  # smallest eigenvalue of a correlation matrix that double precision can still invert usefully
 
@@ -42,7 +42,7 @@ def pose_difference(pose: ArrayLike, reference: ArrayLike) -> Floats:
 def difference_covariance(pose: ArrayLike, covariance: ArrayLike) -> Floats:
     """Covariance of `pose_difference` from a pose, given that of its parameters; (6,), (6, 6) to (6, 6)."""
     jacobian = np.eye(N_PARAMETERS)
-    jacobian[3:, 3:] = small_rotation_by_rotation_vector(np.asarray(pose, dtype=float)[3:])
+    jacobian[3:, 3:] = left_jacobian_so3(np.asarray(pose, dtype=float)[3:])
     return jacobian @ np.asarray(covariance, dtype=float) @ jacobian.T
 
 

@@ -60,7 +60,7 @@ def rotation_angle_rad(first: ArrayLike, second: ArrayLike) -> Floats:
     return np.asarray(np.linalg.norm(rotation_vector_from_matrix(difference), axis=-1))
 
 
-def small_rotation_by_rotation_vector(rotation_vector_rad: ArrayLike) -> Floats:
+def left_jacobian_so3(rotation_vector_rad: ArrayLike) -> Floats:
     """Left Jacobian of SO(3): the small rotation that a change of the rotation vector causes; (..., 3) to (..., 3, 3).
 
     `exp(v + dv) = exp(J(v) dv) exp(v)` to first order.
@@ -93,12 +93,12 @@ def small_rotation_by_euler(euler_rad: ArrayLike) -> Floats:
 def rotation_vector_by_euler(euler_rad: ArrayLike) -> Floats:
     """Jacobian of the rotation vector by (roll, pitch, yaw); (..., 3) to (..., 3, 3)."""
     vector = rotation_vector_from_euler(euler_rad)
-    by_vector, by_euler = small_rotation_by_rotation_vector(vector), small_rotation_by_euler(euler_rad)
+    by_vector, by_euler = left_jacobian_so3(vector), small_rotation_by_euler(euler_rad)
     return np.asarray(np.linalg.solve(by_vector, by_euler), dtype=float)
 
 
 def euler_by_rotation_vector(rotation_vector_rad: ArrayLike) -> Floats:
     """Jacobian of (roll, pitch, yaw) by the rotation vector, singular at pitch = +-pi/2; (..., 3) to (..., 3, 3)."""
     euler = euler_from_rotation_vector(rotation_vector_rad)
-    by_euler, by_vector = small_rotation_by_euler(euler), small_rotation_by_rotation_vector(rotation_vector_rad)
+    by_euler, by_vector = small_rotation_by_euler(euler), left_jacobian_so3(rotation_vector_rad)
     return np.asarray(np.linalg.solve(by_euler, by_vector), dtype=float)

@@ -44,7 +44,7 @@ class Reference:
     levels: Levels
 
 
-Refer = Callable[[Survey, Camera], Reference]
+FindReference = Callable[[Survey, Camera], Reference]
 
 
 def body_rates(survey: Survey) -> Floats:
@@ -76,7 +76,9 @@ class BalancedLikelihood(SharedLikelihood):
     front of the camera.
     """
 
-    def __init__(self, survey: Survey, camera: Camera, refer: Refer, priors: SharedPriors | None = None) -> None:
+    def __init__(
+        self, survey: Survey, camera: Camera, refer: FindReference, priors: SharedPriors | None = None
+    ) -> None:
         super().__init__(survey, camera, priors)
         self._refer = refer
         self.reference = refer(survey, camera)

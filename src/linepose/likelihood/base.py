@@ -62,11 +62,11 @@ class Likelihood(ABC):
         """Half of the range (P,) in which each parameter is searched around `start`."""
         return np.repeat([translation_m, rotation_rad], 3)
 
-    def scatter(self, translation_m: float, rotation_rad: float) -> Floats:
+    def initial_walker_sigma(self, translation_m: float, rotation_rad: float) -> Floats:
         """Sigma (P,) with which walkers are scattered around the optimum, given the pose's."""
         return np.repeat([translation_m, rotation_rad], 3)
 
-    def approach(self) -> "Likelihood":
+    def surrogate(self) -> "Likelihood":
         """A cheaper model of the same parameters, from whose optimum a search may start; itself where there is none."""
         return self
 
@@ -96,7 +96,7 @@ class Likelihood(ABC):
         freedom = int(np.isfinite(normalised).sum()) - N_PARAMETERS
         return float(np.nansum(normalised**2)), max(freedom, 1)
 
-    def mirrored(self) -> "Likelihood":
+    def without_cheirality(self) -> "Likelihood":
         """The same model with points behind the camera reprojected as if in front, as the paper's equations have it.
 
         A model that makes no difference between the two is its own.

@@ -58,15 +58,15 @@ class ClockOffsetLikelihood(Likelihood):
         """Those of the noise model, and the largest offset."""
         return np.append(self.inner.half_widths(translation_m, rotation_rad), self.maximum_s)
 
-    def scatter(self, translation_m: float, rotation_rad: float) -> Floats:
+    def initial_walker_sigma(self, translation_m: float, rotation_rad: float) -> Floats:
         """That of the noise model, and a small part of the largest offset."""
-        return np.append(self.inner.scatter(translation_m, rotation_rad), _SCATTER * self.maximum_s)
+        return np.append(self.inner.initial_walker_sigma(translation_m, rotation_rad), _SCATTER * self.maximum_s)
 
-    def approach(self) -> "Likelihood":
+    def surrogate(self) -> "Likelihood":
         """The noise model's cheaper one with the offset; itself where there is none."""
-        if self.inner.approach() is self.inner:
+        if self.inner.surrogate() is self.inner:
             return self
-        return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).approach(), self.maximum_s)
+        return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).surrogate(), self.maximum_s)
 
     def parameter_priors(self) -> dict[str, tuple[float, float]]:
         """Those of the noise model, and an even one of the offset."""
@@ -107,9 +107,9 @@ class ClockOffsetLikelihood(Likelihood):
         vector = np.asarray(parameters, dtype=float)
         return self._make(float(vector[-1])).chi_square(vector[:-1])
 
-    def mirrored(self) -> "ClockOffsetLikelihood":
-        """The mirrored noise model with the offset."""
-        return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).mirrored(), self.maximum_s)
+    def without_cheirality(self) -> "ClockOffsetLikelihood":
+        """The noise model without cheirality with the offset."""
+        return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).without_cheirality(), self.maximum_s)
 
     def select(self, numbers: Sequence[int]) -> "ClockOffsetLikelihood":
         """The same model of these observations only."""

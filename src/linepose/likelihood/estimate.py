@@ -2,12 +2,12 @@
 
 from linepose.arrays import Floats
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import part
+from linepose.likelihood.compiling import kernel_function
 from linepose.likelihood.layout import LANES
 
 
-@part
-def gather(rays: Floats, sums: Floats, points: Floats) -> None:
+@kernel_function
+def accumulate_pairs(rays: Floats, sums: Floats, points: Floats) -> None:
     """Turn each ray's `sums` (N, SUM_COLUMNS) into the world and add them up, in `points` (POINT_COLUMNS,).
 
     The estimate's columns hold information times position, the covariance's information.
@@ -40,8 +40,8 @@ def gather(rays: Floats, sums: Floats, points: Floats) -> None:
             points[at.E_D + lane] += fd * b1 + gd * b2 + dd * b3 + nd * cn + ed * ce + dd_ * cd
 
 
-@part
-def solve(points: Floats) -> None:
+@kernel_function
+def solve_points(points: Floats) -> None:
     """Turn information into covariance and information times position into position, in place (POINT_COLUMNS,).
 
     NaN where no pair says anything.

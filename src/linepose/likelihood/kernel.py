@@ -12,11 +12,11 @@ from numba import get_thread_id, njit, prange  # type: ignore[attr-defined]
 
 from linepose.arrays import Floats
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import FUSED_ARITHMETIC, part
-from linepose.likelihood.estimate import gather, solve
+from linepose.likelihood.compiling import FUSED_ARITHMETIC
+from linepose.likelihood.estimate import accumulate_pairs, solve_points
 from linepose.likelihood.layout import LANES
 from linepose.likelihood.pairs import intersect
-from linepose.likelihood.rays import camera_axes, cast, spread
+from linepose.likelihood.rays import camera_axes, propagate_covariances, trace_rays
 from linepose.likelihood.reprojection import reproject
 
 MAXIMUM_THREADS: int = numba_config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
@@ -47,26 +47,32 @@ def workspace(n_observations: int, count: int) -> Workspace:
     )
 
 
-@part
+@kernel_function
 def _evaluate(
-    survey: Floats, pose: Floats, rays: Floats, sums: Floats, points: Floats, residuals: Floats, most_behind: float
+    survey: Floats,
+    pose: Floats,
+    rays: Floats,
+    sums: Floats,
+    points: Floats,
+    residuals: Floats,
+    max_behind_camera: float,
 ) -> float:
     axes = np.empty((3, 3))
     scores = np.zeros(2 * LANES)
     camera_axes(pose, axes)
     for block in range(survey.shape[0]):
         rows = survey[block]
-        cast(rows, pose, axes, rays)
-        spread(rows, pose, axes, rays)
+        trace_rays(rows, pose, axes, rays)
+        propagate_covariances(rows, pose, axes, rays)
         intersect(rays, rays, sums, sums)
-        gather(rays, sums, points)
-        solve(points)
+        accumulate_pairs(rays, sums, points)
+        solve_points(points)
         reproject(rows, pose, axes, rays, points, residuals, scores)
     total, behind = 0.0, 0.0
     for lane in range(LANES):
         total += scores[lane]
         behind += scores[LANES + lane]
-    return -0.5 * total if behind <= most_behind and total < np.inf else -np.inf
+    return -0.5 * total if behind <= max_behind_camera and total < np.inf else -np.inf
 
 
 def _digest() -> str:
@@ -78,16 +84,18 @@ def _compiled(sources: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The two entry points. `sources` becomes part of the key of the cache on disk, which else knows this file only."""
 
     @njit(cache=True, error_model="numpy", fastmath=FUSED_ARITHMETIC)
-    def evaluate(survey, pose, rays, sums, points, residuals, most_behind):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    def evaluate(survey, pose, rays, sums, points, residuals, max_behind_camera):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
         _ = sources
-        return _evaluate(survey, pose, rays[0], sums[0], points[0], residuals[0], most_behind)
+        return _evaluate(survey, pose, rays[0], sums[0], points[0], residuals[0], max_behind_camera)
 
     @njit(cache=True, parallel=True, error_model="numpy", fastmath=FUSED_ARITHMETIC)
-    def evaluate_rows(survey, poses, rays, sums, points, residuals, most_behind, out):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    def evaluate_rows(survey, poses, rays, sums, points, residuals, max_behind_camera, out):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
         _ = sources
         for row in prange(poses.shape[0]):
             own = get_thread_id()
-            out[row] = _evaluate(survey, poses[row], rays[own], sums[own], points[own], residuals[own], most_behind)
+            out[row] = _evaluate(
+                survey, poses[row], rays[own], sums[own], points[own], residuals[own], max_behind_camera
+            )
 
     return evaluate, evaluate_rows
 

@@ -11,16 +11,16 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from linepose.likelihood.estimate import gather, solve
+from linepose.likelihood.estimate import accumulate_pairs, solve_points
 from linepose.likelihood.pairs import intersect
-from linepose.likelihood.rays import cast, spread
+from linepose.likelihood.rays import propagate_covariances, trace_rays
 from linepose.likelihood.reprojection import reproject
 
 
 def floating_point_operations(n_observations: int, n_points: int) -> int:
     """Operations of one log-likelihood of N observations of M points, none missing: quadratic in N, linear in M."""
-    each_point = _count(solve)
-    each_ray = sum(_count(part) for part in (cast, spread, gather, reproject))
+    each_point = _count(solve_points)
+    each_ray = sum(_count(part) for part in (trace_rays, propagate_covariances, accumulate_pairs, reproject))
     each_pair = _count(intersect)
     n_pairs = n_observations * (n_observations - 1) // 2
     return n_points * (each_point + each_ray * n_observations + each_pair * n_pairs)

@@ -37,9 +37,9 @@ class PixelLikelihood(Likelihood):
         """Those of the inner model."""
         return self._inner.half_widths(translation_m, rotation_rad)
 
-    def scatter(self, translation_m: float, rotation_rad: float) -> Floats:
+    def initial_walker_sigma(self, translation_m: float, rotation_rad: float) -> Floats:
         """That of the inner model."""
-        return self._inner.scatter(translation_m, rotation_rad)
+        return self._inner.initial_walker_sigma(translation_m, rotation_rad)
 
     def log_likelihood(self, parameters: ArrayLike) -> float:
         """That of the inner model with the residuals' share exchanged."""
@@ -70,9 +70,9 @@ class PixelLikelihood(Likelihood):
         variance = inner.sigma_px**2 + sigma_focal_px**2 * (error**2 + 2 * turning)
         return Residuals(inner.error_px, np.sqrt(variance), pixel, inner.point_m, inner.point_covariance)
 
-    def mirrored(self) -> "PixelLikelihood":
-        """The mirrored inner model in pixels."""
-        return PixelLikelihood(self._inner.mirrored())
+    def without_cheirality(self) -> "PixelLikelihood":
+        """The inner model without cheirality in pixels."""
+        return PixelLikelihood(self._inner.without_cheirality())
 
     def select(self, numbers: Sequence[int]) -> "PixelLikelihood":
         """The same model of these observations only."""

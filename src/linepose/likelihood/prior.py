@@ -76,17 +76,17 @@ class WithPrior(Likelihood):
         """Those of the inner model."""
         return self.inner.half_widths(translation_m, rotation_rad)
 
-    def scatter(self, translation_m: float, rotation_rad: float) -> Floats:
+    def initial_walker_sigma(self, translation_m: float, rotation_rad: float) -> Floats:
         """That of the inner model."""
-        return self.inner.scatter(translation_m, rotation_rad)
+        return self.inner.initial_walker_sigma(translation_m, rotation_rad)
 
     def parameter_priors(self) -> dict[str, tuple[float, float]]:
         """Those of the inner model, which are beyond the pose."""
         return self.inner.parameter_priors()
 
-    def approach(self) -> "Likelihood":
+    def surrogate(self) -> "Likelihood":
         """The cheaper inner model with the same prior; itself where there is none."""
-        cheaper = self.inner.approach()
+        cheaper = self.inner.surrogate()
         return self if cheaper is self.inner else WithPrior(cheaper, self.prior)
 
     def chi_square(self, parameters: ArrayLike) -> tuple[float, int]:
@@ -107,9 +107,9 @@ class WithPrior(Likelihood):
         """Those of the inner model: the prior has none."""
         return self.inner.residuals(parameters)
 
-    def mirrored(self) -> "WithPrior":
-        """The mirrored inner model with the same prior."""
-        return WithPrior(self.inner.mirrored(), self.prior)
+    def without_cheirality(self) -> "WithPrior":
+        """The inner model without cheirality with the same prior."""
+        return WithPrior(self.inner.without_cheirality(), self.prior)
 
     def select(self, numbers: Sequence[int]) -> "WithPrior":
         """The inner model of these observations only, with the whole prior: the tape measured once."""

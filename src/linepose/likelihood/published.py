@@ -24,13 +24,13 @@ class PublishedLikelihood(Likelihood):
 
     A point with fewer than two views does not enter, and is logged. Two rays within 1e-8 rad of parallel say nothing
     of their point. The log-likelihood is minus infinity where a point lies behind a camera that observed it, or where
-    all of its rays are parallel. `most_behind` of such points are let pass: none, but see `mirrored`.
+    all of its rays are parallel. `max_behind_camera` of such points are let pass: none, but see `without_cheirality`.
     """
 
-    def __init__(self, survey: Survey, camera: Camera, most_behind: float = 0.0) -> None:
+    def __init__(self, survey: Survey, camera: Camera, max_behind_camera: float = 0.0) -> None:
         self.survey = survey
         self.camera = camera
-        self._most_behind = most_behind
+        self._max_behind_camera = max_behind_camera
         self._mask = usable(survey)
         if not np.any(self._mask):
             raise InputError("survey", "no point with two views", "at least one", "add observations of the same points")
@@ -45,7 +45,7 @@ class PublishedLikelihood(Likelihood):
             single.sums,
             single.points,
             single.residuals,
-            most_behind,
+            max_behind_camera,
         )
         self._single = single
         self._many: kernel.Workspace | None = None
@@ -63,7 +63,7 @@ class PublishedLikelihood(Likelihood):
         many = self._many
         out = np.empty(len(poses))
         kernel.evaluate_rows(
-            self._rows, poses, many.rays, many.sums, many.points, many.residuals, self._most_behind, out
+            self._rows, poses, many.rays, many.sums, many.points, many.residuals, self._max_behind_camera, out
         )
         return out
 
@@ -103,8 +103,8 @@ class PublishedLikelihood(Likelihood):
 
     def select(self, numbers: Sequence[int]) -> "PublishedLikelihood":
         """The same model of these observations only."""
-        return PublishedLikelihood(self.survey.select(numbers), self.camera, self._most_behind)
+        return PublishedLikelihood(self.survey.select(numbers), self.camera, self._max_behind_camera)
 
-    def mirrored(self) -> "PublishedLikelihood":
+    def without_cheirality(self) -> "PublishedLikelihood":
         """The same model with points behind the camera reprojected as if in front, as Eq. 18 has it."""
         return PublishedLikelihood(self.survey, self.camera, np.inf)

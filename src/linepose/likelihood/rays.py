@@ -8,13 +8,13 @@ import math
 
 from linepose.arrays import Floats
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import part
+from linepose.likelihood.compiling import kernel_function
 from linepose.likelihood.layout import LANES
 
 _SMALL_ANGLE_SQUARED = 1e-4  # below this the series is exact to double precision
 
 
-@part
+@kernel_function
 def camera_axes(pose: Floats, axes: Floats) -> None:
     """Write the camera's axes in the body, the columns of `axes` (3, 3), for the rotation vector pose[3:6]."""
     x, y, z = pose[3], pose[4], pose[5]
@@ -39,8 +39,8 @@ def camera_axes(pose: Floats, axes: Floats) -> None:
     axes[1, 2] = second * y * z - first * x
 
 
-@part
-def cast(survey: Floats, pose: Floats, axes: Floats, rays: Floats) -> None:
+@kernel_function
+def trace_rays(survey: Floats, pose: Floats, axes: Floats, rays: Floats) -> None:
     """Write the frame, centre and moment of every ray; `survey` (N, SURVEY_COLUMNS), `rays` (N, RAY_COLUMNS)."""
     r_x, r_y, r_z = pose[0], pose[1], pose[2]
     x_x, x_y, x_z = axes[0, 0], axes[1, 0], axes[2, 0]
@@ -80,8 +80,8 @@ def cast(survey: Floats, pose: Floats, axes: Floats, rays: Floats) -> None:
             rays[i, at.RAY_MASK + lane] = survey[i, at.MASK + lane]
 
 
-@part
-def spread(survey: Floats, pose: Floats, axes: Floats, rays: Floats) -> None:
+@kernel_function
+def propagate_covariances(survey: Floats, pose: Floats, axes: Floats, rays: Floats) -> None:
     """Write the covariance across every ray: of its centre (1, 2) and its direction (3, 4) along f and g.
 
     With a small displacement p and a small rotation w of the body, the components are f.p + (r x f).w, g.p + (r x g).w,

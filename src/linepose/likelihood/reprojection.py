@@ -2,14 +2,14 @@
 
 from linepose.arrays import Floats
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import part
+from linepose.likelihood.compiling import kernel_function
 from linepose.likelihood.layout import LANES
 
 # Squared error below which it has no direction of its own; the error's variance is then taken along the scan line.
 NO_ERROR = 1e-100
 
 
-@part
+@kernel_function
 def reproject(
     survey: Floats, pose: Floats, axes: Floats, rays: Floats, points: Floats, residuals: Floats, scores: Floats
 ) -> None:

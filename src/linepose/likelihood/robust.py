@@ -109,7 +109,7 @@ class RobustSharedLikelihood(SharedLikelihood):
         point[self._arrays.line_view, self._points[self._arrays.line_point]] = fit.line_weight
         return Weights(fit.view_weight, point)
 
-    def approach(self) -> SharedLikelihood:
+    def surrogate(self) -> SharedLikelihood:
         """The same model without tails: its optimum is near, at a tenth of the cost."""
         return SharedLikelihood(self.survey, self.camera, self.priors)
 

@@ -101,12 +101,14 @@ class SharedLikelihood(Likelihood):
         """Half of the range (11,) in which each parameter is searched: three sigmas of the prior beyond the pose."""
         return np.concatenate([super().half_widths(translation_m, rotation_rad), SEARCH_SIGMAS * self._prior_sigma])
 
-    def scatter(self, translation_m: float, rotation_rad: float) -> Floats:
+    def initial_walker_sigma(self, translation_m: float, rotation_rad: float) -> Floats:
         """Sigma (11,) with which walkers are scattered: narrower than any posterior beyond the pose.
 
         The pixel level's posterior is a fortieth of its prior; walkers that start far outside come in late.
         """
-        return np.concatenate([super().scatter(translation_m, rotation_rad), SCATTER_SIGMAS * self._prior_sigma])
+        return np.concatenate(
+            [super().initial_walker_sigma(translation_m, rotation_rad), SCATTER_SIGMAS * self._prior_sigma]
+        )
 
     def log_likelihoods(self, parameters: ArrayLike) -> Floats:
         """Log-density of each row; (K, 11) to (K,), the same on any number of cores."""

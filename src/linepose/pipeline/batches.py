@@ -19,7 +19,7 @@ import pandas as pd
 import pyarrow as pa
 from tqdm import tqdm
 
-from linepose.pipeline.parent_process import end_with
+from linepose.pipeline.parent_process import exit_with_parent
 from linepose.tables import read_table, write_table
 
 Task = Callable[[str], pd.DataFrame]
@@ -85,7 +85,7 @@ def _begin(task: Task, parent: int) -> None:
     global _task
     _task = task
     numba.set_num_threads(1)
-    end_with(parent)
+    exit_with_parent(parent)
 
 
 def _run(name: str) -> pd.DataFrame:

@@ -8,7 +8,7 @@ from typing import Final
 _LOOK_AFTER_PARENT_S: Final = 0.2
 
 
-def end_with(parent: int) -> None:
+def exit_with_parent(parent: int) -> None:
     """From now on, end this process when its parent, a process id, is gone: killed, it cannot tell its children."""
     threading.Thread(target=_watch, args=(parent,), daemon=True).start()
 

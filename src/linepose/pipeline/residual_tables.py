@@ -59,7 +59,7 @@ def residual_tables(
     return pd.concat(residuals, ignore_index=True), pd.concat(points, ignore_index=True)
 
 
-def alike_in_a_view(residuals: pd.DataFrame, column: str) -> float:
+def intraclass_correlation(residuals: pd.DataFrame, column: str) -> float:
     """Share of a residual's variance that all points of an observation have in common: 0 independent, 1 identical.
 
     The intraclass correlation of one-way analysis of variance; NaN with fewer than two observations of two points.

@@ -21,7 +21,7 @@ from linepose.pipeline.pose_tables import (
     quaternion,
     rotation_vector_numbers,
 )
-from linepose.pipeline.residual_tables import alike_in_a_view
+from linepose.pipeline.residual_tables import intraclass_correlation
 from linepose.pipeline.verdict import Evidence, Verdict, judge
 from linepose.survey.observations import Survey
 
@@ -121,7 +121,9 @@ def gather_evidence(results: Results, numbers: list[PoseNumber]) -> Evidence:
         autocorrelation_time=float(chain["autocorrelation_time"].max()),
         split_r_hat=float(chain["split_r_hat"].max()),
         reduced_chi_square=float(optimum["reduced_chi_square"]),
-        alike_in_a_view=max(alike_in_a_view(residuals, column) for column in ("error_u_px", "error_v_px")),
+        intraclass_correlation=max(
+            intraclass_correlation(residuals, column) for column in ("error_u_px", "error_v_px")
+        ),
         tilt_spread_deg=tilt_spread_deg(results.survey().select(results.accepted())),
         worst_observation=int(worst["observation"]),
         worst_error_px=float(worst["error_px"]),

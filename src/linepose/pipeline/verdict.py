@@ -12,7 +12,7 @@ from linepose.estimation.diagnostics import MAXIMUM_R_HAT, MINIMUM_STEPS_PER_TIM
 from linepose.likelihood.names import PUBLISHED, sampling_section
 
 CONSISTENT: Final = (0.5, 1.5)  # reduced chi-square of errors that are about as large as their sigmas
-ALIKE_IN_A_VIEW: Final = (
+MAX_INTRACLASS_CORRELATION: Final = (
     0.3  # share of the variance that a view's points have in common, above which they are not apart
 )
 SIGMA_FACTOR: Final = 1.25  # by which splits may ask for larger sigmas
@@ -45,7 +45,7 @@ class Evidence:
     autocorrelation_time: float
     split_r_hat: float
     reduced_chi_square: float
-    alike_in_a_view: float
+    intraclass_correlation: float
     tilt_spread_deg: float
     worst_observation: int
     worst_error_px: float
@@ -173,11 +173,11 @@ def residual_size(evidence: Evidence) -> Check:
 
 def independence(evidence: Evidence) -> Check:
     """Whether the points of a view err independently, where the noise model takes them to."""
-    if isnan(evidence.alike_in_a_view):
+    if isnan(evidence.intraclass_correlation):
         return Check("Independence within a view", Level.GOOD, "Not known: it takes two observations of two points.")
-    share = 100 * max(evidence.alike_in_a_view, 0.0)
+    share = 100 * max(evidence.intraclass_correlation, 0.0)
     found = f"{share:.0f} % of the residuals' variance is common to all points of a view."
-    if evidence.alike_in_a_view <= ALIKE_IN_A_VIEW:
+    if evidence.intraclass_correlation <= MAX_INTRACLASS_CORRELATION:
         return Check("Independence within a view", Level.GOOD, found)
     if evidence.noise_model != PUBLISHED:
         told = f"{found} The {evidence.noise_model} noise model infers how much, and its sigmas allow for it."

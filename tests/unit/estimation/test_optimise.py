@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from linepose.errors import EstimationError, InputError
-from linepose.estimation.optimise import Search, bounded, climb, laplace_covariance, optimise
+from linepose.estimation.optimise import Search, bounded, laplace_covariance, minimise, optimise
 
 SIGMA = np.array([0.03, 0.05, 0.06, 0.016, 0.018, 0.009])
 
@@ -151,7 +151,7 @@ def test_undefined_neighbourhood_is_an_error(function_likelihood, nothing):
 
 
 def test_gradients_climb_to_the_known_minimum(gaussian, pose_covariance, true_pose):
-    found = climb(gaussian, true_pose + np.array([0.1, -0.1, 0.1, 0.03, 0.03, -0.03]), true_pose)
+    found = minimise(gaussian, true_pose + np.array([0.1, -0.1, 0.1, 0.03, 0.03, -0.03]), true_pose)
     expected = gaussian.measured.mean(axis=0)
     distance = np.linalg.solve(np.linalg.cholesky(laplace_covariance(gaussian, expected)), found.parameters - expected)
     assert np.linalg.norm(distance) < 0.02  # gradient below 1e-3 a unit, which is some sigmas
@@ -159,9 +159,9 @@ def test_gradients_climb_to_the_known_minimum(gaussian, pose_covariance, true_po
 
 
 def test_climb_without_an_optimum_is_told(function_likelihood):
-    assert not climb(function_likelihood(lambda p: np.full(len(p), np.inf)), np.zeros(6), np.zeros(6)).converged
+    assert not minimise(function_likelihood(lambda p: np.full(len(p), np.inf)), np.zeros(6), np.zeros(6)).converged
 
 
 def test_climb_starts_from_a_finite_pose(gaussian):
     with pytest.raises(InputError, match="start pose"):
-        climb(gaussian, np.zeros(6), [np.nan] * 6)
+        minimise(gaussian, np.zeros(6), [np.nan] * 6)

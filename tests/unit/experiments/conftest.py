@@ -34,7 +34,7 @@ class GaussianLikelihood(Likelihood):
     def half_widths(self, translation_m, rotation_rad):
         return np.concatenate([super().half_widths(translation_m, rotation_rad), np.ones(self.means.shape[1] - 6)])
 
-    def scatter(self, translation_m, rotation_rad):
+    def initial_walker_sigma(self, translation_m, rotation_rad):
         return self.half_widths(translation_m, rotation_rad)
 
     def log_likelihoods(self, parameters):

@@ -10,8 +10,8 @@ from linepose.estimation.optimise import laplace_covariance, optimise
 from linepose.estimation.sampling import SamplingSettings
 from linepose.experiments.clock_offset import (
     CORRELATION_COLUMNS,
-    Told,
-    Without,
+    ClockOffsetEvidence,
+    PoseWithoutOffset,
     correlation_with_all,
     estimate_clock_offset,
 )
@@ -37,7 +37,9 @@ def estimated(platform, settings, planted_s, maximum_s):
     survey, log = clock_survey.record(platform.intrinsics(), settings, planted_s, seed)
     model = clock_survey.likelihood(platform.intrinsics(), survey, log, maximum_s)
     plain = optimise(model.inner, platform.start_pose())
-    without = Without(plain.parameters, laplace_covariance(model.inner, plain.parameters), plain.neg_log_likelihood)
+    without = PoseWithoutOffset(
+        plain.parameters, laplace_covariance(model.inner, plain.parameters), plain.neg_log_likelihood
+    )
     table, samples = estimate_clock_offset(model, without, platform.start_pose(), seed, settings=SHORT)
     return table, samples
 
@@ -94,7 +96,7 @@ def test_row_holds_the_offset_its_sigma_and_the_pose_with_and_without(both_ways,
     assert row["sigma_s"] == max(row["sampled_sigma_s"], row["jackknife_sigma_s"])
     # of ten observations the jackknife's own relative error is about 1 / sqrt(2 x 9), and its tails are long
     assert row["jackknife_sigma_s"] == pytest.approx(row["laplace_sigma_s"], rel=0.7)
-    assert row["told_apart"]
+    assert row["identifiable"]
     assert row["verdict"].startswith("The camera's clock is behind the navigation's: the offset is ")
     assert f"Add {round(1e6 * row['offset_s'])} us to the camera's time stamps" in row["advice"]
     assert row["neg_log_likelihood"] < row["neg_log_likelihood_without"]
@@ -105,9 +107,9 @@ def test_row_holds_the_offset_its_sigma_and_the_pose_with_and_without(both_ways,
 @pytest.mark.statistical
 def test_passes_of_one_direction_and_speed_bring_the_warning(one_way, both_ways):
     row, free = one_way[0].iloc[0], both_ways[0].iloc[0]
-    assert not row["told_apart"]
+    assert not row["identifiable"]
     assert row["shrinkage"] < 0.5
-    assert free["told_apart"]
+    assert free["identifiable"]
     assert row["correlation_r_x"] > 0.7  # the offset takes it along as far as it is allowed to
     assert row["correlation_r_x"] == max(row[list(CORRELATION_COLUMNS)].abs())
     assert free["correlation_pose"] < 0.9 < row["correlation_pose"]
@@ -131,7 +133,7 @@ def told(**changes):
         | {"correlation_roll": 0.0, "correlation_pitch": -0.4, "correlation_yaw": 0.2},
         "mahalanobis": 1.5,
     }
-    return Told(**(values | changes))
+    return ClockOffsetEvidence(**(values | changes))
 
 
 def test_words():
@@ -150,7 +152,7 @@ def test_words():
 @pytest.mark.parametrize("changes", [{"shrinkage": 0.5, "correlation_pose": 0.95}, {"correlation_pose": 0.99}])
 def test_words_where_the_pose_hides_it(changes):
     linked = told(**changes)
-    assert not linked.is_told_apart()
+    assert not linked.is_identifiable()
     assert "cannot be told from the pose: 30.0 ± 4.0 ms" in linked.verdict()
     assert linked.verdict().endswith("it goes with the pitch, correlation -0.40.")
     assert "add passes in the other direction" in linked.advice()
@@ -158,14 +160,14 @@ def test_words_where_the_pose_hides_it(changes):
 
 def test_words_where_the_noise_hides_it():
     noisy = told(shrinkage=0.5)
-    assert not noisy.is_told_apart()
+    assert not noisy.is_identifiable()
     assert noisy.verdict() == "The data do not tell the clock offset: 30.0 ± 4.0 ms, where ±100 ms were allowed."
     assert "Faster passes" in noisy.advice()
 
 
 def test_words_at_the_end_of_the_range():
     end = told(offset_s=0.099)
-    assert not end.is_told_apart()
+    assert not end.is_identifiable()
     assert end.verdict() == "The clock offset is at the end of its range: 99.0 ± 4.0 ms of ±100 ms."
     assert end.advice().startswith("Raise experiments.clock_offset.maximum_s")
 

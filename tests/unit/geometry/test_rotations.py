@@ -102,9 +102,7 @@ def test_left_jacobian_is_its_power_series(angle_rad):
             expected += power
             power = power @ cross_matrix(angle_rad * axis) / (n + 1)
         # (1 - cos a) / a^2 at 1e-3 is known to eps / 1e-6, and counts with a: 1e-13
-        np.testing.assert_allclose(
-            rotations.small_rotation_by_rotation_vector(angle_rad * axis), expected, rtol=0, atol=2e-13
-        )
+        np.testing.assert_allclose(rotations.left_jacobian_so3(angle_rad * axis), expected, rtol=0, atol=2e-13)
 
 
 def test_euler_jacobian_is_the_complex_step_of_the_matrix():
@@ -142,7 +140,7 @@ def test_rotation_vector_by_euler_is_a_difference_quotient(euler_rad):
 def test_leading_axes_pass_through():
     vectors = RNG.normal(size=(2, 3, 3))
     assert rotations.matrix_from_rotation_vector(vectors).shape == (2, 3, 3, 3)
-    assert rotations.small_rotation_by_rotation_vector(vectors).shape == (2, 3, 3, 3)
+    assert rotations.left_jacobian_so3(vectors).shape == (2, 3, 3, 3)
     assert rotations.rotation_vector_by_euler(vectors).shape == (2, 3, 3, 3)
     one = rotations.euler_by_rotation_vector(vectors[1, 2])
     np.testing.assert_allclose(rotations.euler_by_rotation_vector(vectors)[1, 2], one, atol=1e-15)

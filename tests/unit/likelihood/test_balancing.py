@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linepose.estimation.balancing import balanced, reference_from
-from linepose.estimation.optimise import climb
+from linepose.estimation.optimise import minimise
 from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 START = POSE + np.array([0.05, -0.05, 0.04, 0.03, -0.02, 0.02])
@@ -12,7 +12,7 @@ START = POSE + np.array([0.05, -0.05, 0.04, 0.03, -0.02, 0.02])
 
 def test_the_reference_is_where_the_search_ends():
     likelihood = balanced(make_survey(8, 6, Truth(0.5, 0.1, 1.0), seed=3), CAMERA, START)
-    found = climb(likelihood, likelihood.start(START), START)
+    found = minimise(likelihood, likelihood.start(START), START)
     sigma = 0.05  # of the levels, about; their priors differ in width between the two
     assert found.converged
     np.testing.assert_allclose(found.parameters[:6], likelihood.reference.pose, atol=5e-3)

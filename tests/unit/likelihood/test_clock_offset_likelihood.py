@@ -68,7 +68,7 @@ def test_selected_observations_are_the_model_of_these(simulated, model):
     vector = np.append(platform.simulation.true_pose, 0.0123)
     apart = clock_survey.likelihood(platform.intrinsics(), survey.select([1, 2, 5, 8]), log)
     assert model.select([1, 2, 5, 8]).log_likelihood(vector) == pytest.approx(apart.log_likelihood(vector), rel=1e-12)
-    assert model.mirrored().log_likelihood(vector) == pytest.approx(model.log_likelihood(vector), rel=1e-9)
+    assert model.without_cheirality().log_likelihood(vector) == pytest.approx(model.log_likelihood(vector), rel=1e-9)
 
 
 def test_where_a_neighbour_is_undefined_so_is_what_lies_between(function_likelihood):

@@ -51,4 +51,4 @@ def test_rows_and_selection_agree_with_the_single_value():
     assert own.log_likelihoods([SYNTHETIC_POSE, SYNTHETIC_POSE])[1] == own.log_likelihood(SYNTHETIC_POSE)
     some = PixelLikelihood(PublishedLikelihood(survey.select([2, 4, 5]), CAMERA))
     assert own.select([2, 4, 5]).log_likelihood(SYNTHETIC_POSE) == some.log_likelihood(SYNTHETIC_POSE)
-    assert own.mirrored().log_likelihood(SYNTHETIC_POSE) == own.log_likelihood(SYNTHETIC_POSE)
+    assert own.without_cheirality().log_likelihood(SYNTHETIC_POSE) == own.log_likelihood(SYNTHETIC_POSE)

@@ -109,6 +109,6 @@ def test_what_is_not_the_prior_s_is_the_noise_model_s():
     assert both.select(chosen).log_likelihood(rows[0]) == apart.log_likelihood(rows[0])
     assert both.parameter_names == data.parameter_names
     behind = np.array([0.0, 0.0, 0.0, np.pi, 0.0, 0.0])
-    assert both.mirrored().log_likelihood(behind) == pytest.approx(
-        data.mirrored().log_likelihood(behind) + pose_prior(CENTRE, COVARIANCE).log_density(behind), rel=1e-12
+    assert both.without_cheirality().log_likelihood(behind) == pytest.approx(
+        data.without_cheirality().log_likelihood(behind) + pose_prior(CENTRE, COVARIANCE).log_density(behind), rel=1e-12
     )

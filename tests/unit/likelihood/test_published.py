@@ -116,7 +116,7 @@ def test_mirrored_model_is_the_plain_equations_behind_the_camera():
     survey = synthetic_survey(6, 5, seed=1)
     pose = SYNTHETIC_POSE.copy()
     pose[2] += 20.0
-    model = PublishedLikelihood(survey, DISTORTED_CAMERA).mirrored()
+    model = PublishedLikelihood(survey, DISTORTED_CAMERA).without_cheirality()
     plain = reference.evaluate(survey, DISTORTED_CAMERA, pose)
     expected = -0.5 * np.nansum((plain.error_px / plain.sigma_px) ** 2)
     assert model.log_likelihood(pose) == pytest.approx(expected, rel=RELATIVE)

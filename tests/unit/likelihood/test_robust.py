@@ -127,7 +127,7 @@ def test_a_bad_view_moves_the_pose_less_than_under_gaussian_errors():
 def test_rows_are_the_same_one_by_one():
     likelihood = RobustSharedLikelihood(with_a_bad_view(make_survey(6, 5, Truth(0.5), seed=8), 1), CAMERA)
     random = np.random.default_rng(1)
-    rows = parameters_of(likelihood) + random.normal(size=(8, 11)) * likelihood.scatter(0.02, 0.01)
+    rows = parameters_of(likelihood) + random.normal(size=(8, 11)) * likelihood.initial_walker_sigma(0.02, 0.01)
     assert np.array_equal(likelihood.log_likelihoods(rows), [likelihood.log_likelihood(row) for row in rows])
 
 

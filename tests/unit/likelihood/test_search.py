@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize
 
 from linepose.errors import EstimationError
-from linepose.estimation.optimise import Search, bounded, climb, laplace_covariance, optimise
+from linepose.estimation.optimise import Search, bounded, laplace_covariance, minimise, optimise
 from linepose.likelihood.robust import RobustSharedLikelihood
 from linepose.likelihood.shared import SharedLikelihood
 from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
@@ -56,14 +56,14 @@ def test_the_curvature_is_that_of_plain_second_differences(likelihood, found):
 
 def test_climbing_from_nearby_ends_at_the_same_optimum(likelihood, found):
     sigma = np.sqrt(np.diag(laplace_covariance(likelihood, found.parameters)))
-    again = climb(likelihood, found.parameters + 0.5 * sigma * np.random.default_rng(1).choice([-1, 1], 11), START)
+    again = minimise(likelihood, found.parameters + 0.5 * sigma * np.random.default_rng(1).choice([-1, 1], 11), START)
     assert again.neg_log_likelihood == pytest.approx(found.neg_log_likelihood, abs=1e-4)
     assert again.n_evaluations < found.n_evaluations
 
 
 def test_the_robust_model_starts_at_the_optimum_without_tails(likelihood):
     robust = RobustSharedLikelihood(likelihood.survey, CAMERA)
-    assert type(robust.approach()) is SharedLikelihood
+    assert type(robust.surrogate()) is SharedLikelihood
     end = optimise(robust, START)
     assert end.converged
     assert end.neg_log_likelihood < -robust.log_likelihood(optimise(likelihood, START).parameters)

@@ -161,7 +161,7 @@ def test_parameters_are_named_and_searched_within_their_priors():
     assert likelihood.n_parameters == len(likelihood.start(POSE)) == 11
     assert likelihood.parameter_names[9:] == ("principal_point_px", "focal_length_m")
     assert np.allclose(likelihood.half_widths(2.0, np.pi), [2] * 3 + [np.pi] * 3 + [4.5] * 3 + [6.0, 3e-4])
-    assert np.allclose(likelihood.scatter(0.1, 0.01), [0.1] * 3 + [0.01] * 3 + [0.045] * 3 + [0.06, 3e-6])
+    assert np.allclose(likelihood.initial_walker_sigma(0.1, 0.01), [0.1] * 3 + [0.01] * 3 + [0.045] * 3 + [0.06, 3e-6])
 
 
 def test_residuals_are_those_of_the_estimated_points():

@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 
 from linepose.likelihood.base import Residuals
-from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS, alike_in_a_view, residual_tables
+from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS, intraclass_correlation, residual_tables
 from linepose.pipeline.result_schemas import ESTIMATED_POINTS, RESIDUALS
 from linepose.survey.observations import POSITION_COLUMNS, survey_from_table
 from linepose.tables import write_table
@@ -57,19 +57,21 @@ def test_what_a_view_has_in_common_is_found(share):
     table = pd.DataFrame({"observation": views, "point": points, "error_u_px": error.ravel()})
     # the standard error of an intraclass correlation, Fisher (1925)
     sigma = (1 - share) * (1 + (n_points - 1) * share) * np.sqrt(2 / (n_points * (n_points - 1) * (n_views - 1)))
-    assert alike_in_a_view(table, "error_u_px") == pytest.approx(share, abs=4 * sigma)
+    assert intraclass_correlation(table, "error_u_px") == pytest.approx(share, abs=4 * sigma)
 
 
 def test_views_of_one_point_say_nothing_of_what_they_share():
-    assert np.isnan(alike_in_a_view(pd.DataFrame({"observation": [1, 2], "error_u_px": [1.0, 2.0]}), "error_u_px"))
+    assert np.isnan(
+        intraclass_correlation(pd.DataFrame({"observation": [1, 2], "error_u_px": [1.0, 2.0]}), "error_u_px")
+    )
 
 
 def test_views_of_different_size_that_are_each_constant_share_everything():
     table = pd.DataFrame({"observation": [1, 1, 2, 2, 2], "error_u_px": [1.0, 1.0, 4.0, 4.0, 4.0]})
-    assert alike_in_a_view(table, "error_u_px") == pytest.approx(1.0)
+    assert intraclass_correlation(table, "error_u_px") == pytest.approx(1.0)
 
 
 def test_what_two_small_views_share_is_that_of_the_analysis_of_variance():
     # means 1 and 5 of two: mean squares 2 (4 + 4) = 16 between and 4 / 2 = 2 within, (16 - 2) / (16 + 2)
     table = pd.DataFrame({"observation": [1, 1, 2, 2], "error_u_px": [0.0, 2.0, 4.0, 6.0]})
-    assert alike_in_a_view(table, "error_u_px") == pytest.approx(14 / 18)
+    assert intraclass_correlation(table, "error_u_px") == pytest.approx(14 / 18)

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from linepose.config.navigation_formats import NavigationFormat, brought_format
+from linepose.config.navigation_formats import NavigationFormat, plugin_format
 from linepose.inputs.navigation import novatel, resonon, rosbag, sbet, table
 
 OWN: Final = {one.name: one for one in (table.FORMAT, novatel.FORMAT, sbet.FORMAT, rosbag.FORMAT, resonon.FORMAT)}
@@ -10,4 +10,4 @@ OWN: Final = {one.name: one for one in (table.FORMAT, novatel.FORMAT, sbet.FORMA
 
 def navigation_format(name: str) -> NavigationFormat:
     """The format of this name; raises InputError naming the nearest one where there is none."""
-    return OWN[name] if name in OWN else brought_format(name)
+    return OWN[name] if name in OWN else plugin_format(name)

@@ -18,7 +18,7 @@ from linepose.output.exports.options import BodyAxes, ExportOptions, export_opti
 from linepose.output.exports.points import frame_of, read_mapped_points
 from linepose.output.exports.ros2 import write_ros2
 from linepose.output.exports.urdf import write_urdf
-from linepose.tables import whole_file
+from linepose.tables import atomic_write
 
 __all__ = ["EXPORTS", "ExportOptions", "Exporter", "Finished", "export_options", "export_platform"]
 
@@ -110,6 +110,6 @@ def export_platform(
     exporter = EXPORTS[format]
     path = output / f"{name}{exporter.suffix}" if output.is_dir() else output
     finished = Finished(results, platform, name, stage)
-    with whole_file(path) as temporary:
+    with atomic_write(path) as temporary:
         exporter.write(finished, options or ExportOptions(), temporary)
     return path

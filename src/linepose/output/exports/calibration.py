@@ -12,9 +12,9 @@ from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.geometry.rotations import (
+    left_jacobian_so3,
     matrix_from_rotation_vector,
     rotation_vector_from_matrix,
-    small_rotation_by_rotation_vector,
 )
 from linepose.output.exports.options import BodyAxes
 from linepose.pipeline.result_schemas import POSE, SAMPLES
@@ -71,7 +71,7 @@ class Calibration:
             return self
         rotation = matrix_from_rotation_vector(self.pose[3:])
         vector = rotation_vector_from_matrix(_TO_FLU @ rotation)
-        before, after = (small_rotation_by_rotation_vector(v) for v in (self.pose[3:], vector))
+        before, after = (left_jacobian_so3(v) for v in (self.pose[3:], vector))
         jacobian = np.zeros((6, 6))
         jacobian[:3, :3] = _TO_FLU
         jacobian[3:, 3:] = np.linalg.solve(after, _TO_FLU @ before)

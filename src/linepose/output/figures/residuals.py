@@ -8,7 +8,7 @@ from matplotlib.patches import Patch
 
 from linepose.output.figures.checks import stage_rows, usable_rows
 from linepose.output.figures.style import BLACK, BLUE, GREY, SKY, WIDE_IN, blank_figure, styled
-from linepose.pipeline.residual_tables import alike_in_a_view
+from linepose.pipeline.residual_tables import intraclass_correlation
 
 _COLUMNS = ("stage", "observation", "point", "error_px", "error_u_px", "error_v_px", "sigma_px")
 _SPREAD = 0.5  # of a slot, over which the dots of one group are laid out
@@ -58,7 +58,7 @@ def residuals_caption(table: pd.DataFrame, by: str) -> str:
     expected = float(np.sqrt((rows["sigma_px"] ** 2).mean()))
     size = f"RMS error {rms:.1f} px, where sigmas of {expected:.1f} px in its direction were expected. "
     if by == "observation":
-        common = max(alike_in_a_view(rows, column) for column in ("error_u_px", "error_v_px"))
+        common = max(intraclass_correlation(rows, column) for column in ("error_u_px", "error_v_px"))
         told = (
             ""
             if np.isnan(common)

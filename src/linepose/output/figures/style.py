@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from linepose.tables import whole_file
+from linepose.tables import atomic_write
 
 HALF_PAGE_IN: Final = 3.5
 WIDE_IN: Final = 4.6  # for several panels: still read when printed at half a page
@@ -100,7 +100,7 @@ def save(figure: Figure, stem: Path) -> None:
     """Write `stem`.png and `stem`.pdf, the same bytes for the same figure."""
     undated = {"CreationDate": None, "ModDate": None, "Producer": None, "Creator": None}
     with mpl.rc_context(_STYLE):
-        with whole_file(stem.with_suffix(".png")) as path:
+        with atomic_write(stem.with_suffix(".png")) as path:
             figure.savefig(path, metadata={"Software": None})
-        with whole_file(stem.with_suffix(".pdf")) as path:
+        with atomic_write(stem.with_suffix(".pdf")) as path:
             figure.savefig(path, metadata=undated)

@@ -17,7 +17,7 @@ def clocks_section(results: PlatformResults) -> SectionOnPage | None:
     if np.isfinite(row["jackknife_sigma_s"]):
         sigmas.append(f"{1e3 * row['jackknife_sigma_s']:.1f} ms from leaving out one observation at a time")
     advice = f" What to do: {row['advice']}" if row["advice"] else ""
-    warning = "" if row["told_apart"] else "Warning: "
+    warning = "" if row["identifiable"] else "Warning: "
     text = f"{warning}{row['verdict']}{advice} One sigma is the larger of {' and '.join(sigmas)}."
     anchor = f"{results.name}-clock-offset"
     poses = [

@@ -5,10 +5,10 @@ from typing import Final
 
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.clocks import clocks_section
-from linepose.output.report.decided import decided_section
-from linepose.output.report.dependence import dependence_section
+from linepose.output.report.data_or_prior import decided_section
 from linepose.output.report.noise_models import noise_models_section
 from linepose.output.report.sections import SectionOnPage
+from linepose.output.report.sensitivity import dependence_section
 
 _SECTIONS: Final[tuple[Callable[[PlatformResults], SectionOnPage | None], ...]] = (
     decided_section,

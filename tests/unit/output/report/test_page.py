@@ -12,8 +12,8 @@ from PIL import Image
 
 from linepose.errors import InputError
 from linepose.output.figures.catalogue import FIGURES
-from linepose.output.report.made_with import settings_text
 from linepose.output.report.pictures import embedded
+from linepose.output.report.provenance import settings_text
 from linepose.paper.report_sections import published_sections
 from linepose.pipeline.summary import gather_evidence, summarise, tilt_spread_deg
 from linepose.survey.observations import survey_from_table
@@ -165,7 +165,7 @@ def test_evidence_is_gathered_from_the_results(results):
     assert (evidence.n_observations, evidence.n_accepted, evidence.n_steps) == (6, 4, 20)
     assert (evidence.worst_observation, evidence.worst_error_px) == (4, 3.0)
     assert (evidence.most_influential, evidence.influence) == (3, 1.5)
-    assert evidence.alike_in_a_view == pytest.approx(1.0)
+    assert evidence.intraclass_correlation == pytest.approx(1.0)
     assert evidence.truth_sigmas is None
     assert evidence.undecided == ()
     # two of the four accepted observations are rolled by 5 deg, two are not: 2.5 deg from their mean

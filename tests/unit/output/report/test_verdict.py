@@ -12,7 +12,7 @@ FINE = Evidence(
     autocorrelation_time=50.0,
     split_r_hat=1.002,
     reduced_chi_square=1.0,
-    alike_in_a_view=0.05,
+    intraclass_correlation=0.05,
     tilt_spread_deg=2.7,
     worst_observation=24,
     worst_error_px=3.0,
@@ -51,7 +51,7 @@ def test_everything_in_order_says_use_it_and_asks_for_nothing():
         ({"reduced_chi_square": 2.5}, "Size of the residuals", Level.BAD, "covariances"),
         ({"reduced_chi_square": 0.44}, "Size of the residuals", Level.CARE, "columns"),
         (
-            {"alike_in_a_view": 0.31, "sigma_factor": None},
+            {"intraclass_correlation": 0.31, "sigma_factor": None},
             "Independence within a view",
             Level.CARE,
             "noise_model: shared",
@@ -100,6 +100,6 @@ def test_a_parameter_that_only_the_tape_knows_is_named():
 
 
 def test_errors_in_common_do_no_harm_where_halves_agree():
-    check = named(judge(replace(FINE, alike_in_a_view=0.9, sigma_factor=1.0)), "Independence within a view")
+    check = named(judge(replace(FINE, intraclass_correlation=0.9, sigma_factor=1.0)), "Independence within a view")
     assert check.level == Level.GOOD
     assert "90 %" in check.found

@@ -7,7 +7,7 @@ import pytest
 from linepose.experiments import schemas
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.output.figures.results import PlatformResults
-from linepose.output.report.dependence import dependence_section
+from linepose.output.report.sensitivity import dependence_section
 from linepose.tables import write_table
 from unit import made_up
 

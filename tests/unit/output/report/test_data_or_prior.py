@@ -6,7 +6,7 @@ import pytest
 from linepose.experiments.schemas import CLOCK_OFFSET, PRIOR
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.clocks import clocks_section
-from linepose.output.report.decided import decided_section
+from linepose.output.report.data_or_prior import decided_section
 from linepose.tables import write_table
 from unit import made_up
 
@@ -61,7 +61,7 @@ def test_clock_offset_comes_with_both_sigmas_and_what_to_do(tmp_path):
 
 
 def test_an_offset_that_cannot_be_told_is_a_warning(tmp_path):
-    table = made_up.clock_offset().assign(told_apart=False, jackknife_sigma_s=float("nan"))
+    table = made_up.clock_offset().assign(identifiable=False, jackknife_sigma_s=float("nan"))
     section = clocks_section(results_with(tmp_path, clock_offset=(table, CLOCK_OFFSET)))
     assert section.text.startswith("Warning: The camera's clock")
     assert "nan" not in section.text
