@@ -10,6 +10,6 @@ from numba import njit
 FUSED_ARITHMETIC: Final = {"contract"}
 
 
-def part(function: Callable[..., Any]) -> Callable[..., Any]:
+def kernel_function(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a part of the kernel; only what calls the parts is cached on disk, see kernel.py."""
     return njit(error_model="numpy", fastmath=FUSED_ARITHMETIC)(function)

@@ -12,7 +12,7 @@ from numba import get_thread_id, njit, prange  # type: ignore[attr-defined]
 
 from linepose.arrays import Floats
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import FUSED_ARITHMETIC
+from linepose.likelihood.compiling import FUSED_ARITHMETIC, kernel_function
 from linepose.likelihood.estimate import accumulate_pairs, solve_points
 from linepose.likelihood.layout import LANES
 from linepose.likelihood.pairs import intersect
