@@ -24,3 +24,9 @@ class InputError(LineposeError):
 
 class EstimationError(LineposeError):
     """A computation that has no usable result: the message names the quantity and the remedy."""
+
+
+def quoted(value: object) -> str:
+    """A value as messages show it: its `repr`, of a NumPy scalar that of the Python number."""
+    plain = getattr(value, "item", None)
+    return repr(plain() if callable(plain) and getattr(value, "shape", None) == () else value)

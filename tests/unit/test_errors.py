@@ -1,6 +1,9 @@
 import pickle
 
-from linepose.errors import EstimationError, InputError, LineposeError
+import numpy as np
+import pytest
+
+from linepose.errors import EstimationError, InputError, LineposeError, quoted
 
 
 def test_message_is_one_line_of_place_found_expected_remedy():
@@ -17,3 +20,8 @@ def test_survives_the_way_back_from_another_process():
 def test_one_base_catches_both():
     assert issubclass(InputError, LineposeError)
     assert issubclass(EstimationError, LineposeError)
+
+
+@pytest.mark.parametrize(("value", "told"), [("x", "'x'"), (np.float64(0.1), "0.1"), (np.int64(3), "3"), ([1], "[1]")])
+def test_a_value_is_quoted_as_python_writes_it(value, told):
+    assert quoted(value) == told

@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
-from linepose.errors import InputError
+from linepose.errors import InputError, quoted
 
 
 class Section(BaseModel):
@@ -54,8 +54,8 @@ def _one_line(model: type[Section], fault: ErrorDetails, place: str) -> InputErr
     if fault["type"] == "missing":
         return InputError(where, "nothing", "a value", "add it")
     if fault["type"] == "model_type":
-        return InputError(where, repr(fault["input"]), "keys and values", "write `key: value` lines below it")
-    return InputError(where, repr(fault["input"]), _expected(fault["msg"]), "correct the value")
+        return InputError(where, quoted(fault["input"]), "keys and values", "write `key: value` lines below it")
+    return InputError(where, quoted(fault["input"]), _expected(fault["msg"]), "correct the value")
 
 
 def _expected(message: str) -> str:

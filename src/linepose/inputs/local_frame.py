@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from pyproj import CRS, Proj, Transformer
 from pyproj.exceptions import CRSError, ProjError
 
-from linepose.arrays import Floats
+from linepose.arrays import Floats, exact_decimal
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.inputs.axes import NED_FROM_ENU
@@ -112,10 +112,10 @@ def _ecef_from_ned(latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> Floats:
 
 @cache
 def _topocentric(origin: tuple[float, float, float]) -> Transformer:
-    latitude, longitude, height = origin
+    latitude, longitude, height = map(exact_decimal, origin)
     return Transformer.from_pipeline(
         "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad +step +proj=cart +ellps=WGS84 "
-        f"+step +proj=topocentric +ellps=WGS84 +lat_0={latitude!r} +lon_0={longitude!r} +h_0={height!r}"
+        f"+step +proj=topocentric +ellps=WGS84 +lat_0={latitude} +lon_0={longitude} +h_0={height}"
     )
 
 

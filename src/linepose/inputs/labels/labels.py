@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from linepose.errors import InputError
+from linepose.errors import InputError, quoted
 from linepose.inputs.scans.scan_files import Scan
 from linepose.survey.pattern import N_POINTS
 
@@ -35,7 +35,7 @@ def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
     values = table.apply(pd.to_numeric, errors="coerce")
     for row, column in np.argwhere(~np.isfinite(values.to_numpy(dtype=float)))[:1]:
         place = f"{path}, row {row + 2}, {_COLUMNS[column]}"
-        raise InputError(place, repr(table.iloc[row, column]), "a number", "mend the cell")
+        raise InputError(place, quoted(table.iloc[row, column]), "a number", "mend the cell")
     _check_each(values["observation"], set(numbers), "observation", "the observations with a scan", path)
     _check_each(values["point"], set(range(N_POINTS)), "point", f"0 to {N_POINTS - 1}", path)
     for row in np.flatnonzero(values.duplicated(["observation", "point"]))[:1]:

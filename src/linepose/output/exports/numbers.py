@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from linepose.arrays import exact_decimal
+
 
 def plain(values: ArrayLike) -> list[float]:
     """An array (K,) as Python floats, never -0, which YAML and JSON write in full."""
@@ -11,4 +13,4 @@ def plain(values: ArrayLike) -> list[float]:
 
 def numbers(values: ArrayLike) -> str:
     """Several numbers (K,), the shortest decimals that are these doubles, a space between."""
-    return " ".join(map(repr, plain(values)))
+    return " ".join(map(exact_decimal, plain(values)))

@@ -43,7 +43,8 @@ def frame_of(results: Path, platform: Platform, name: str) -> MapFrame:
         row = recorded.iloc[0]
         if row["crs"] != GEODETIC:
             return projected_map(row["crs"], f"{of_log}: crs")
-        return tangent_map((row["latitude_deg"], row["longitude_deg"], row["height_m"]), str(of_log))
+        origin = (float(row["latitude_deg"]), float(row["longitude_deg"]), float(row["height_m"]))
+        return tangent_map(origin, str(of_log))
     raise InputError(
         place,
         "nothing",

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import yaml
 
+from linepose.arrays import exact_decimal
 from linepose.output.exports.calibration import Calibration
 from linepose.output.exports.numbers import plain
 from linepose.output.exports.options import ExportOptions
@@ -36,7 +37,7 @@ def write_ros2(calibration: Calibration, options: ExportOptions, path: Path) -> 
 
 def launch_line(options: ExportOptions, translation: dict[str, float], rotation: dict[str, float]) -> str:
     """The command that publishes the transform without the file."""
-    moved = [item for axis, value in translation.items() for item in (f"--{axis}", repr(value))]
-    turned = [item for axis, value in rotation.items() for item in (f"--q{axis}", repr(value))]
+    moved = [item for axis, value in translation.items() for item in (f"--{axis}", exact_decimal(value))]
+    turned = [item for axis, value in rotation.items() for item in (f"--q{axis}", exact_decimal(value))]
     frames = ["--frame-id", options.parent_frame, "--child-frame-id", options.child_frame]
     return shlex.join(["ros2", "run", "tf2_ros", "static_transform_publisher", *moved, *turned, *frames])
