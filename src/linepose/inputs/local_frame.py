@@ -110,13 +110,17 @@ def _ecef_from_ned(latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> Floats:
     return np.stack([north, east, down], axis=-1)
 
 
-@cache
 def _topocentric(origin: tuple[float, float, float]) -> Transformer:
     latitude, longitude, height = map(exact_decimal, origin)
-    return Transformer.from_pipeline(
+    return _pipeline(
         "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad +step +proj=cart +ellps=WGS84 "
         f"+step +proj=topocentric +ellps=WGS84 +lat_0={latitude} +lon_0={longitude} +h_0={height}"
     )
+
+
+@cache
+def _pipeline(text: str) -> Transformer:
+    return Transformer.from_pipeline(text)
 
 
 @cache
