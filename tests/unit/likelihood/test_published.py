@@ -13,7 +13,7 @@ from linepose.likelihood import kernel, layout
 from linepose.likelihood.layout import LANES
 from linepose.likelihood.prepare import survey_rows
 from linepose.likelihood.published import PublishedLikelihood
-from linepose.likelihood.rays import cast, spread
+from linepose.likelihood.rays import propagate_covariances, trace_rays
 from linepose.likelihood.reprojection import reproject
 from linepose.survey.observations import Survey
 from unit.likelihood import reference
@@ -159,8 +159,8 @@ def test_no_error_is_no_nan():
     )
     rows = survey_rows(survey, PLAIN_CAMERA, np.ones((2, 1)), np.zeros((1, 3)))[0]
     scratch, pose, axes, scores = kernel.workspace(2, 1), np.zeros(6), np.eye(3), np.zeros(2 * LANES)
-    cast(rows, pose, axes, scratch.rays[0])
-    spread(rows, pose, axes, scratch.rays[0])
+    trace_rays(rows, pose, axes, scratch.rays[0])
+    propagate_covariances(rows, pose, axes, scratch.rays[0])
     depth_m, point_variance = 2.0, 1e-4
     points = scratch.points[0]
     points[layout.E_D : layout.E_D + LANES] = depth_m
