@@ -7,7 +7,7 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.experiments import BasinSection
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection
+    from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.basin import Sweep
     from linepose.experiments.schemas import BASIN
@@ -25,7 +25,7 @@ with stage(snakemake) as log:
         reference.covariance,
         settings.grid(),
         snakemake.params.seed,
-        SearchSection.model_validate(snakemake.params.search).settings(),
+        Search.model_validate(snakemake.params.search),
         settings.success_threshold,
     )
     ranges = batch_ranges(settings.grid().n_cells, settings.batch_size)

@@ -7,8 +7,9 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.experiments import ClockOffsetSection
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection, sampling_settings
+    from linepose.config.study import sampling_settings
     from linepose.estimation.noise_models import likelihood_factory
+    from linepose.estimation.optimise import Search
     from linepose.estimation.sampling import stage_seed
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.clock_offset import PoseWithoutOffset, estimate_clock_offset
@@ -20,7 +21,7 @@ with stage(snakemake) as log:
 
     platform = Platform.model_validate(snakemake.params.platform)
     maximum_s = ClockOffsetSection.model_validate(snakemake.params.clock_offset).maximum_s
-    search = SearchSection.model_validate(snakemake.params.search).settings()
+    search = Search.model_validate(snakemake.params.search)
     settings = sampling_settings(snakemake.params.sampling)
     accepted = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers).accepted
     reference = read_reference(accepted, snakemake.input.optima, snakemake.input.samples)

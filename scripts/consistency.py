@@ -7,7 +7,7 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.experiments import NoiseModelsSection, RepeatabilitySection
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection
+    from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import named_pair, read_accepted, read_others
     from linepose.experiments.consistency import Comparisons, groups_of, summarise_consistency
     from linepose.experiments.noise_models import INLIERS
@@ -29,7 +29,7 @@ with stage(snakemake) as log:
         list(named_pair(data, repeatability, params.file).values()),
         platform.start_pose(),
         params.seed,
-        SearchSection.model_validate(params.search).settings(),
+        Search.model_validate(params.search),
     )
     parts = comparisons.parts(settings.n_splits, settings.batch_size)
     work = Path(params.work) / inputs_digest(dict(params.items()), files)

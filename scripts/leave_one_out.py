@@ -4,14 +4,14 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection
+    from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.repeatability import leave_one_out
     from linepose.experiments.schemas import LEAVE_ONE_OUT
     from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
-    search = SearchSection.model_validate(snakemake.params.search).settings()
+    search = Search.model_validate(snakemake.params.search)
     data = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers)
     reference = read_reference(data.accepted, snakemake.input.optima, snakemake.input.samples)
     table = leave_one_out(data.accepted, reference.pose, reference.covariance, search)

@@ -3,13 +3,12 @@
 from adapter import stage
 
 with stage(snakemake) as log:
-    from dataclasses import replace
-
     import numpy as np
 
     from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection, sampling_settings
+    from linepose.config.study import sampling_settings
+    from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import named_pair, read_accepted, read_others
     from linepose.experiments.noise_models import (
         ALL,
@@ -34,8 +33,8 @@ with stage(snakemake) as log:
     sets |= {name: data.accepted.survey.select(list(numbers)) for name, numbers in pair.items()}
     independence = sampling_settings(params.independence_sampling)
     settings = {PUBLISHED: sampling_settings(params.sampling), SHARED: independence, BALANCED: independence}
-    settings[ROBUST] = replace(independence, n_steps=params.robust_steps)
-    search = SearchSection.model_validate(params.search).settings()
+    settings[ROBUST] = independence.replaced(n_steps=params.robust_steps)
+    search = Search.model_validate(params.search)
     fits = []
     for fit in fit_noise_models(sets, platform.intrinsics(), settings, platform.start_pose(), params.seed, search):
         fits.append(fit)

@@ -4,7 +4,7 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection
+    from linepose.estimation.optimise import Search
     from linepose.estimation.outliers import stage_observations
     from linepose.pipeline.platform_likelihood import platform_likelihood
     from linepose.pipeline.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, laplace_sigma_columns, with_parameters
@@ -13,7 +13,7 @@ with stage(snakemake) as log:
     from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
-    search = SearchSection.model_validate(snakemake.params.search).settings()
+    search = Search.model_validate(snakemake.params.search)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
     likelihood = platform_likelihood(platform, survey)
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))

@@ -4,16 +4,16 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.study import OutliersSection, SearchSection
-    from linepose.estimation.outliers import outlier_table, reject_outliers, removal_order
+    from linepose.estimation.optimise import Search
+    from linepose.estimation.outliers import OutlierSettings, outlier_table, reject_outliers, removal_order
     from linepose.pipeline.platform_likelihood import platform_likelihood
     from linepose.pipeline.result_schemas import OBSERVATIONS, OUTLIERS
     from linepose.survey.observations import survey_from_table
     from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
-    outliers = OutliersSection.model_validate(snakemake.params.outliers)
-    search = SearchSection.model_validate(snakemake.params.search).settings()
+    outliers = OutlierSettings.model_validate(snakemake.params.outliers)
+    search = Search.model_validate(snakemake.params.search)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
     likelihood = platform_likelihood(platform, survey)
     stages = reject_outliers(likelihood, platform.start_pose(), outliers.minimum_observations, search)

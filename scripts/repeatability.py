@@ -5,7 +5,8 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection, sampling_settings
+    from linepose.config.study import sampling_settings
+    from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import read_accepted
     from linepose.experiments.repeatability import compare_subsets
     from linepose.experiments.schemas import REPEATABILITY
@@ -13,7 +14,7 @@ with stage(snakemake) as log:
 
     platform = Platform.model_validate(snakemake.params.platform)
     settings = RepeatabilitySection.model_validate(snakemake.params.repeatability)
-    search = SearchSection.model_validate(snakemake.params.search).settings()
+    search = Search.model_validate(snakemake.params.search)
     sampling = sampling_settings(snakemake.params.sampling)
     data = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers)
     pair = {"subset_1": settings.first, "subset_2": settings.second}

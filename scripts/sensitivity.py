@@ -4,7 +4,7 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection
+    from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import read_accepted
     from linepose.experiments.schemas import SENSITIVITY
     from linepose.experiments.sensitivity import camera_changes, sensitivity
@@ -14,7 +14,7 @@ with stage(snakemake) as log:
     from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
-    search = SearchSection.model_validate(snakemake.params.search).settings()
+    search = Search.model_validate(snakemake.params.search)
     nominal = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers).accepted
     changes = {}
     if platform.noise_model == PUBLISHED:  # the other models' residuals are in pixels

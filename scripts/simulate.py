@@ -5,11 +5,11 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.config.platform import CameraSection
+    from linepose.geometry.camera import Camera
     from linepose.simulation.record import write_survey
     from linepose.simulation.settings import settings_from_dict
 
-    camera = CameraSection.model_validate(snakemake.params.camera).intrinsics()
+    camera = Camera.model_validate(snakemake.params.camera)
     settings = settings_from_dict(snakemake.params.simulation)
     folder = Path(snakemake.output.folder)
     write_survey(folder, camera, settings)

@@ -7,7 +7,7 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection
+    from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import read_accepted, read_reference
     from linepose.experiments.repeatability import random_splits
     from linepose.experiments.schemas import SPLITS
@@ -17,7 +17,7 @@ with stage(snakemake) as log:
 
     platform = Platform.model_validate(snakemake.params.platform)
     settings = RepeatabilitySection.model_validate(snakemake.params.repeatability)
-    search = SearchSection.model_validate(snakemake.params.search).settings()
+    search = Search.model_validate(snakemake.params.search)
     data = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers)
     reference = read_reference(data.accepted, snakemake.input.optima, snakemake.input.samples)
     size = settings.split_size or data.accepted.survey.n_observations // 2

@@ -5,7 +5,8 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.experiments import SubsetSection
     from linepose.config.platform import Platform
-    from linepose.config.study import SearchSection, sampling_settings
+    from linepose.config.study import sampling_settings
+    from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import read_accepted
     from linepose.experiments.schemas import SUBSETS
     from linepose.experiments.subsets import subset_estimates
@@ -13,7 +14,7 @@ with stage(snakemake) as log:
 
     platform = Platform.model_validate(snakemake.params.platform)
     sections = {key: SubsetSection.model_validate(value) for key, value in snakemake.params.subsets.items()}
-    search = SearchSection.model_validate(snakemake.params.search).settings()
+    search = Search.model_validate(snakemake.params.search)
     sampling = sampling_settings(snakemake.params.sampling)
     data = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers)
     subsets = data.subsets(sections, f"{snakemake.params.file}: experiments.subsets")

@@ -10,7 +10,7 @@ _HOMES = {
     "Camera": "geometry.camera",
     "CameraSigmas": "geometry.camera",
     "Calibration": "pipeline.calibration",
-    "HandMeasured": "pipeline.calibration",
+    "HandMeasured": "survey.hand_measured",
     "CalibrationSettings": "pipeline.calibrate",
     "calibrate": "pipeline.calibrate",
     "calibrate_platform": "pipeline.api",

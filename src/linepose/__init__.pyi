@@ -14,4 +14,4 @@ from linepose.pipeline.api import observations_from_arrays as observations_from_
 from linepose.pipeline.calibrate import CalibrationSettings as CalibrationSettings
 from linepose.pipeline.calibrate import calibrate as calibrate
 from linepose.pipeline.calibration import Calibration as Calibration
-from linepose.pipeline.calibration import HandMeasured as HandMeasured
+from linepose.survey.hand_measured import HandMeasured as HandMeasured

@@ -26,7 +26,7 @@ _INTRINSIC_STEPS: Final = 0.05  # of the intrinsics' own sigmas
 _LEVELS: Final = np.log([1.0, 0.1, 1.0])  # navigation errors as reported, alike in a view; pixel errors as stated
 _SIGNS: Final = np.array([1.0, -1.0])
 _SEED: Final = 2017
-_SEARCH: Final = Search(half_width_m=1.0, half_width_rad=0.5)
+_SEARCH: Final = Search(half_width_m=1.0, half_width_deg=30.0)
 
 
 def published_covariance(

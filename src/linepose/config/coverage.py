@@ -4,14 +4,14 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, model_validator
 
-from linepose.config.schema import Section
 from linepose.experiments.coverage_survey import NoiseLevels
+from linepose.settings import Settings
 
 Level = Annotated[float, Field(ge=0)]
 NoiseModelName = Literal["published", "shared", "balanced"]
 
 
-class RegimeSection(Section):
+class RegimeSection(Settings):
     """The true noise of surveys, in units of what is reported, and the noise models that estimate from them."""
 
     shared_level: Level = Field(0.0, description="Navigation error constant in a view (reported sigmas).")
@@ -56,7 +56,7 @@ class RegimeSection(Section):
         )
 
 
-class CoverageSection(Section):
+class CoverageSection(Settings):
     """Simulated surveys with a known truth: how often the stated regions hold it (snakemake coverage)."""
 
     platforms: list[str] = Field([], description="Simulated platforms among the study's; all of these if empty.")

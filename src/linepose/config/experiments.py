@@ -5,14 +5,14 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, model_validator
 
-from linepose.config.schema import Section
 from linepose.experiments.basin import BasinGrid, Region
 from linepose.experiments.subsets import AngleRule
+from linepose.settings import Settings
 
 OptimiserName = Literal["powell", "powell_in_front", "wide"]
 
 
-class RuleSection(Section):
+class RuleSection(Settings):
     """Draw observations whose body angle is in a range."""
 
     angle: Literal["roll", "pitch", "yaw"] = Field(description="The body angle, averaged over an observation's points.")
@@ -26,7 +26,7 @@ class RuleSection(Section):
         return AngleRule(self.angle, float(low), float(high), self.count)
 
 
-class SubsetSection(Section):
+class SubsetSection(Settings):
     """Accepted observations, by number or by rules on body angles."""
 
     observations: list[int] = Field([], description="Observation numbers; or give rules.")
@@ -40,7 +40,7 @@ class SubsetSection(Section):
         return self
 
 
-class RepeatabilitySection(Section):
+class RepeatabilitySection(Settings):
     """Whether disjoint sets of observations give the same pose."""
 
     first: SubsetSection | None = Field(None, description="The first of two disjoint subsets.")
@@ -55,7 +55,7 @@ class RepeatabilitySection(Section):
         return self
 
 
-class BasinSection(Section):
+class BasinSection(Settings):
     """From how far away the optimum is found. One start in each cell of a grid over distance and angle."""
 
     maximum_distance_m: PositiveFloat = Field(2.0, description="The grid reaches this far from the optimum (m).")
@@ -87,19 +87,19 @@ class BasinSection(Section):
         return Region(self.region_distance_m, float(np.deg2rad(self.region_angle_deg)))
 
 
-class MappingSection(Section):
+class MappingSection(Settings):
     """The observed points projected onto the pattern's plane."""
 
     perturbation_deg: PositiveFloat = Field(1.0, description="Turn about each body axis of the perturbed pose (deg).")
 
 
-class ClockOffsetSection(Section):
+class ClockOffsetSection(Settings):
     """The camera's clock against the navigation's, one parameter beside the pose; needs a raw navigation log."""
 
     maximum_s: PositiveFloat = Field(0.1, description="The clocks differ by no more than this (s).")
 
 
-class SensitivitySection(Section):
+class SensitivitySection(Settings):
     """The pose under other choices."""
 
     platforms: list[str] = Field(
@@ -109,7 +109,7 @@ class SensitivitySection(Section):
     )
 
 
-class NoiseModelsSection(Section):
+class NoiseModelsSection(Settings):
     """The pose under each noise model, side by side, and whether disjoint observations agree under each."""
 
     platforms: list[str] = Field(
@@ -124,7 +124,7 @@ class NoiseModelsSection(Section):
     batch_size: PositiveInt = Field(20, description="Splits between two savings; no result depends on it.")
 
 
-class ExperimentsSection(Section):
+class ExperimentsSection(Settings):
     """Which experiments are run on the accepted observations; null leaves one out."""
 
     subsets: dict[str, SubsetSection] = Field({}, description="Subsets whose poses are compared, by name.")

@@ -2,10 +2,10 @@
 
 from pydantic import Field, model_validator
 
-from linepose.config.schema import Section
+from linepose.settings import Settings
 
 
-class MapFrameSection(Section):
+class MapFrameSection(Settings):
     """Where on the Earth the survey's north, east and down are; for exports of mapped points only."""
 
     crs: str | None = Field(

@@ -12,15 +12,15 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, PositiveFloat, Tag, WithJsonSchema, model_validator
 
-from linepose.config.schema import Section, validated
 from linepose.errors import InputError
+from linepose.settings import Settings, validated
 
 GROUP: Final = "linepose.navigation_formats"
 Names = tuple[str, str, str]
 TimeScale = Literal["gps", "unix"]
 
 
-class NavigationFormatSection(Section):
+class NavigationFormatSection(Settings):
     """Keys of every navigation format; a format adds its own, and narrows `format` to its name."""
 
     format: str
@@ -71,7 +71,7 @@ class NavigationFormat:
     read: Callable[[Any, Path], Any]
 
 
-class ColumnsSection(Section):
+class ColumnsSection(Settings):
     """Which column holds what; a file without a heading has the columns "1", "2", ..."""
 
     time: str = Field("time_us", description="Time, in `time_unit` and `time_scale`.")

@@ -8,9 +8,11 @@ from typing import Final, Literal
 
 import yaml
 
-from linepose.config.platform import CameraSection, HandMeasuredSection, NavigationSection, Platform, SigmasSection
-from linepose.config.schema import validated
+from linepose.config.platform import NavigationSection, Platform
 from linepose.errors import InputError
+from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.settings import validated
+from linepose.survey.hand_measured import HandMeasured
 from linepose.tables import atomic_write
 
 Triple = tuple[float, float, float]
@@ -80,8 +82,8 @@ def _head(new: NewPlatform) -> list[str]:
 def _camera(new: NewPlatform) -> list[str]:
     middle = (new.n_pixels - 1) / 2
     principal = middle if new.principal_point_px is None else new.principal_point_px
-    about, sigma = _descriptions(CameraSection), _descriptions(SigmasSection)
-    default = SigmasSection()
+    about, sigma = _descriptions(Camera), _descriptions(CameraSigmas)
+    default = CameraSigmas()
     return [
         "camera: # from the data sheet, better from a calibration of the lens",
         f"  focal_length_m: {_number(new.focal_length_m)} # {about['focal_length_m']}",
@@ -96,7 +98,7 @@ def _camera(new: NewPlatform) -> list[str]:
 
 
 def _hand(new: NewPlatform) -> list[str]:
-    about = _descriptions(HandMeasuredSection)
+    about = _descriptions(HandMeasured)
     return [
         "hand_measured: # the start; body x forward, y right, z down; camera x along the scan line, z the optical axis",
         f"  position_m: {_triple(new.position_m)} # {about['position_m']}",

@@ -5,13 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 import yaml
 from pydantic import (
     BeforeValidator,
     Field,
     PositiveFloat,
-    PositiveInt,
     TypeAdapter,
     WithJsonSchema,
     field_validator,
@@ -22,58 +20,19 @@ from linepose.arrays import Floats
 from linepose.config.experiments import ExperimentsSection
 from linepose.config.map_frame import MapFrameSection
 from linepose.config.outline import OutlineSection
-from linepose.config.schema import Section, faults_of, validated
 from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.errors import InputError
-from linepose.geometry.camera import Camera, CameraSigmas
-from linepose.geometry.pose import rotation_vector_covariance, rotation_vector_pose
+from linepose.geometry.camera import Camera
 from linepose.likelihood.names import NoiseModelName
 from linepose.likelihood.prior import PosePrior, pose_prior
+from linepose.settings import Settings, faults_of, validated
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
+from linepose.survey.hand_measured import HandMeasured
 
-Triple = tuple[float, float, float]
-NonNegative = Annotated[float, Field(ge=0)]
 AttitudeColumn = Annotated[int, Field(ge=3, le=11)]
 
 
-class SigmasSection(Section):
-    """One standard deviation of each camera quantity."""
-
-    u_px: PositiveFloat = Field(0.5, description="Of a point's position along the scan line (px).")
-    v_px: PositiveFloat = Field(0.5, description="Of a point's position across the scan line (px).")
-    principal_point_px: NonNegative = Field(2.0, description="Of the principal point (px).")
-    focal_length_m: NonNegative = Field(1e-4, description="Of the focal length (m).")
-    k1: NonNegative = Field(0.0, description="Of the first radial distortion coefficient (no unit).")
-    k2: NonNegative = Field(0.0, description="Of the second radial distortion coefficient (no unit).")
-
-
-class CameraSection(Section):
-    """Intrinsic parameters of the line-scan camera."""
-
-    focal_length_m: PositiveFloat = Field(description="Focal length (m).")
-    pixel_pitch_m: PositiveFloat = Field(description="Width of a pixel on the sensor (m).")
-    n_pixels: PositiveInt = Field(description="Pixels of a scan line.")
-    principal_point_px: float = Field(description="Where the optical axis meets the line (px, counted from 0).")
-    k1: float = Field(0.0, description="First radial distortion coefficient (no unit).")
-    k2: float = Field(0.0, description="Second radial distortion coefficient (no unit).")
-    sigmas: SigmasSection = Field(SigmasSection(), description="One standard deviation of each.")
-
-    def intrinsics(self) -> Camera:
-        """The camera that geometry works with."""
-        values = self.model_dump()
-        return Camera(**(values | {"sigmas": CameraSigmas(**values["sigmas"])}))
-
-
-class HandMeasuredSection(Section):
-    """The camera's pose on the vehicle as read from a tape measure: the start of the search."""
-
-    position_m: Triple = Field(description="Camera in the body frame: forward, right, down (m).")
-    euler_deg: Triple = Field(description="Camera to body: roll, pitch, yaw, zyx intrinsic (deg).")
-    sigma_position_m: PositiveFloat = Field(0.1, description="One standard deviation of each coordinate (m).")
-    sigma_euler_deg: PositiveFloat = Field(2.0, description="One standard deviation of each angle (deg).")
-
-
-class NavigationSection(Section):
+class NavigationSection(Settings):
     """How the navigation system's solution is read."""
 
     covariance_columns: tuple[AttitudeColumn, AttitudeColumn, AttitudeColumn] = Field(
@@ -126,12 +85,12 @@ def _keys(settings: type) -> list[str]:
 Simulation = Annotated[SimulationSettings, BeforeValidator(_simulation), WithJsonSchema({"type": "object"})]
 
 
-class Platform(Section):
+class Platform(Settings):
     """One platform: a camera on a vehicle and what it recorded."""
 
     description: str = Field("", description="One line for people.")
-    camera: CameraSection = Field(description="Intrinsic parameters.")
-    hand_measured: HandMeasuredSection = Field(description="The pose from the tape measure.")
+    camera: Camera = Field(description="Intrinsic parameters.")
+    hand_measured: HandMeasured = Field(description="The pose from the tape measure.")
     navigation: NavigationSection = Field(NavigationSection(), description="The navigation system.")
     source: LabelledViewsSection | ScansSection = Field(
         description="Where the observations come from.", discriminator="kind"
@@ -180,17 +139,15 @@ class Platform(Section):
 
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""
-        return self.camera.intrinsics()
+        return self.camera
 
     def start_pose(self) -> Floats:
         """The hand-measured pose with a rotation vector (6,)."""
-        return rotation_vector_pose(self._hand_measured_euler_pose())
+        return self.hand_measured.pose
 
     def start_covariance(self) -> Floats:
         """Covariance of the hand-measured pose with a rotation vector (6, 6)."""
-        hand = self.hand_measured
-        sigma = np.repeat([hand.sigma_position_m, np.deg2rad(hand.sigma_euler_deg)], 3)
-        return rotation_vector_covariance(self._hand_measured_euler_pose(), np.diag(sigma**2))
+        return self.hand_measured.covariance
 
     def hand_measurement(self) -> PosePrior:
         """The hand-measured pose with its covariance, whether it counts as a prior or not."""
@@ -199,9 +156,6 @@ class Platform(Section):
     def pose_prior(self) -> PosePrior | None:
         """The pose's prior; None where the data decide alone."""
         return self.hand_measurement() if self.prior == "hand_measured" else None
-
-    def _hand_measured_euler_pose(self) -> Floats:
-        return np.concatenate([self.hand_measured.position_m, np.deg2rad(self.hand_measured.euler_deg)])
 
 
 def load_platform(folder: Path, name: str) -> Platform:

@@ -12,10 +12,10 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from linepose.config.platform import Platform
-from linepose.config.schema import Section
 from linepose.config.study import DatasetSection, Study
+from linepose.settings import Settings
 
-_PARTS: dict[str, tuple[str, type[Section]]] = {
+_PARTS: dict[str, tuple[str, type[Settings]]] = {
     "config": ("config/config.yaml", Study),
     "platform": ("config/platforms/NAME.yaml", Platform),
     "dataset": ("config/datasets/NAME.yaml", DatasetSection),

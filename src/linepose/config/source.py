@@ -8,10 +8,10 @@ from typing import Any, Literal
 from pydantic import Field, PositiveInt, model_validator
 
 from linepose.config.navigation_formats import Navigation
-from linepose.config.schema import Section
+from linepose.settings import Settings
 
 
-class LabelledViewsSection(Section):
+class LabelledViewsSection(Settings):
     """Labelled points that already carry the body pose: CSV files, one a view of the pattern."""
 
     kind: Literal["labelled_views"] = Field(description="Points labelled by hand, one CSV file a view.")
@@ -26,7 +26,7 @@ class LabelledViewsSection(Section):
         return {*folder.glob(self.views), folder / self.covariances}
 
 
-class ScansSection(Section):
+class ScansSection(Settings):
     """Scan images with a time stamp for each line, and the navigation system's raw log."""
 
     kind: Literal["scans"] = Field(description="Scan images, one a view of the pattern.")

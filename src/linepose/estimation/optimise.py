@@ -10,12 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field, PositiveFloat
 from scipy.optimize import minimize
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
 from linepose.geometry.pose import N_PARAMETERS, check_pose
 from linepose.likelihood.base import Likelihood
+from linepose.settings import Settings
 
 _UNDEFINED = 1e300  # Powell's line search needs a number where the likelihood is zero
 _STEPS = np.array([1.0, -1.0])
@@ -28,14 +30,18 @@ _GRADIENT = 1e-3  # in -log L per unit, where BFGS ends: some thousandths of a s
 _FLAT = 2e-2  # where the rounding of the robust model's sweeps may end it: some hundredths
 
 
-@dataclass(frozen=True)
-class Search:
+class Search(Settings):
     """How the optimum is searched: the range around the start, and Powell's tolerances (the paper's by default)."""
 
-    half_width_m: float = 2.0
-    half_width_rad: float = float(np.pi)
-    x_tolerance: float = 1e-5
-    f_tolerance: float = 1e-8
+    half_width_m: PositiveFloat = Field(2.0, description="Each coordinate is searched within +- this (m).")
+    half_width_deg: PositiveFloat = Field(180.0, description="Each rotation component within +- this (deg).")
+    x_tolerance: PositiveFloat = Field(1e-5, description="Powell's relative tolerance of the parameters.")
+    f_tolerance: PositiveFloat = Field(1e-8, description="Powell's relative tolerance of -log L.")
+
+    @property
+    def half_width_rad(self) -> float:
+        """Each rotation component is searched within +- this (rad)."""
+        return float(np.deg2rad(self.half_width_deg))
 
 
 @dataclass(frozen=True)
@@ -77,7 +83,7 @@ def optimise_within(
     if cheaper is not likelihood:
         first = optimise_within(cheaper, start, centre, half_width, search)
     else:
-        coarse = replace(search, x_tolerance=_COARSE_X, f_tolerance=_COARSE_F)
+        coarse = search.replaced(x_tolerance=_COARSE_X, f_tolerance=_COARSE_F)
         first = _powell(likelihood, start, centre, half_width, coarse)
     ends = [_climb(likelihood, parameters, centre, half_width) for parameters in (start, first.parameters)]
     best = min(ends, key=lambda end: (not end.converged, end.neg_log_likelihood))

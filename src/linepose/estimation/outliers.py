@@ -6,12 +6,21 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
+from pydantic import Field, PositiveFloat
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
 from linepose.estimation.optimise import Optimum, Search, optimise
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.likelihood.base import Likelihood
+from linepose.settings import Settings
+
+
+class OutlierSettings(Settings):
+    """Iterative removal of the worst observation."""
+
+    threshold_px: PositiveFloat = Field(5.0, description="Accepted when every observation's mean error is below (px).")
+    minimum_observations: int = Field(10, ge=3, description="Removal goes on, for the figures, down to this many.")
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any, Final
 import emcee
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
@@ -17,34 +18,35 @@ from linepose.estimation.moves import independence_move
 from linepose.estimation.optimise import laplace_covariance
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.names import PUBLISHED
+from linepose.settings import Settings
 
 _WARM_UPS: Final = 2
 _OPEN_M, _OPEN_RAD = 0.02, 0.005  # where walkers start around an optimum whose curvature is of no use
 
 
-@dataclass(frozen=True)
-class SamplingSettings:
-    """The ensemble's size, length and start (the paper's by default)."""
+class SamplingSettings(Settings):
+    """The ensemble's size, length and start, moved as in the paper (whose numbers are the defaults)."""
 
-    n_walkers: int = 250
-    n_burn_in: int = 100
-    n_steps: int = 100
-    stretch_scale: float = 2.5
-    start_sigma_m: float = 0.1
-    start_sigma_rad: float = 0.01
+    n_walkers: int = Field(250, ge=4, description="Walkers of the ensemble.")
+    n_burn_in: NonNegativeInt = Field(100, description="Steps thrown away.")
+    n_steps: int = Field(100, ge=4, description="Steps kept.")
+    stretch_scale: float = Field(2.5, gt=1, description="Scale a of the stretch move.")
+    start_sigma_m: PositiveFloat = Field(0.1, description="Walkers start around the optimum with this sigma (m).")
+    start_sigma_rad: PositiveFloat = Field(0.01, description="The same for the rotation vector (rad).")
 
 
-@dataclass(frozen=True)
-class IndependenceSettings:
+class IndependenceSettings(Settings):
     """The ensemble's size and length for proposals from the fitted posterior, and the share of them among the moves.
 
     The rest are differential-evolution moves, which go on where the posterior is no Gaussian at all.
     """
 
-    n_walkers: int = 24
-    n_burn_in: int = 160
-    n_steps: int = 1000
-    independent_share: float = 0.9
+    n_walkers: int = Field(24, ge=24, description="Walkers of the ensemble, two a parameter or more.")
+    n_burn_in: int = Field(160, ge=20, description="Steps that fit the proposals, thrown away.")
+    n_steps: int = Field(1000, ge=4, description="Steps kept.")
+    independent_share: float = Field(
+        0.9, gt=0, lt=1, description="Share of proposals from the fit; the rest are differential evolution."
+    )
 
 
 @dataclass(frozen=True)

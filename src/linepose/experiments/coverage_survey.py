@@ -7,7 +7,7 @@ of a point is that of the platform's extraction, across the line in lines and so
 pixels, which is what the noise models take it to be.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -54,8 +54,7 @@ def draw_survey(
 ) -> tuple[Survey, Floats]:
     """A survey of the drive's faultless observations, and the true pose (6,); the camera is as it is believed to be."""
     deviation = levels.intrinsics * random.standard_normal(2)
-    true_camera = replace(
-        camera,
+    true_camera = camera.replaced(
         principal_point_px=camera.principal_point_px + deviation[0] * camera.sigmas.principal_point_px,
         focal_length_m=camera.focal_length_m + deviation[1] * camera.sigmas.focal_length_m,
     )

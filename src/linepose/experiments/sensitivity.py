@@ -4,7 +4,6 @@ The sigmas are the curvature's: a sampled one carries the chain's noise, which i
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import pandas as pd
 from numpy.typing import ArrayLike
@@ -22,13 +21,13 @@ def camera_changes(camera: Camera) -> dict[str, Camera]:
     """The camera with focal length and principal point one standard deviation up and down, by name."""
     sigmas = camera.sigmas
     return {
-        "focal length + 1 sigma": replace(camera, focal_length_m=camera.focal_length_m + sigmas.focal_length_m),
-        "focal length - 1 sigma": replace(camera, focal_length_m=camera.focal_length_m - sigmas.focal_length_m),
-        "principal point + 1 sigma": replace(
-            camera, principal_point_px=camera.principal_point_px + sigmas.principal_point_px
+        "focal length + 1 sigma": camera.replaced(focal_length_m=camera.focal_length_m + sigmas.focal_length_m),
+        "focal length - 1 sigma": camera.replaced(focal_length_m=camera.focal_length_m - sigmas.focal_length_m),
+        "principal point + 1 sigma": camera.replaced(
+            principal_point_px=camera.principal_point_px + sigmas.principal_point_px
         ),
-        "principal point - 1 sigma": replace(
-            camera, principal_point_px=camera.principal_point_px - sigmas.principal_point_px
+        "principal point - 1 sigma": camera.replaced(
+            principal_point_px=camera.principal_point_px - sigmas.principal_point_px
         ),
     }
 

@@ -4,37 +4,35 @@ Pixel u counts along the scan line from 0; its centre is at the whole number. Th
 image plane lies at z = 1 in front of the camera, with x along the scan line. Radial distortion acts on x alone.
 """
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt
 
 from linepose.arrays import Floats
+from linepose.settings import Settings
 
 
-@dataclass(frozen=True)
-class CameraSigmas:
+class CameraSigmas(Settings):
     """One standard deviation of each camera quantity; units in the names, k1 and k2 have none."""
 
-    u_px: float = 0.5
-    v_px: float = 0.5
-    principal_point_px: float = 2.0
-    focal_length_m: float = 1e-4
-    k1: float = 0.0
-    k2: float = 0.0
+    u_px: PositiveFloat = Field(0.5, description="Of a point's position along the scan line (px).")
+    v_px: PositiveFloat = Field(0.5, description="Of a point's position across the scan line (px).")
+    principal_point_px: NonNegativeFloat = Field(2.0, description="Of the principal point (px).")
+    focal_length_m: NonNegativeFloat = Field(1e-4, description="Of the focal length (m).")
+    k1: NonNegativeFloat = Field(0.0, description="Of the first radial distortion coefficient (no unit).")
+    k2: NonNegativeFloat = Field(0.0, description="Of the second radial distortion coefficient (no unit).")
 
 
-@dataclass(frozen=True)
-class Camera:
+class Camera(Settings):
     """Intrinsic parameters of a line-scan camera and how well they are known."""
 
-    focal_length_m: float
-    pixel_pitch_m: float
-    n_pixels: int
-    principal_point_px: float
-    k1: float = 0.0
-    k2: float = 0.0
-    sigmas: CameraSigmas = field(default_factory=CameraSigmas)
+    focal_length_m: PositiveFloat = Field(description="Focal length (m).")
+    pixel_pitch_m: PositiveFloat = Field(description="Width of a pixel on the sensor (m).")
+    n_pixels: PositiveInt = Field(description="Pixels of a scan line.")
+    principal_point_px: float = Field(description="Where the optical axis meets the line (px, counted from 0).")
+    k1: float = Field(0.0, description="First radial distortion coefficient (no unit).")
+    k2: float = Field(0.0, description="Second radial distortion coefficient (no unit).")
+    sigmas: CameraSigmas = Field(CameraSigmas(), description="One standard deviation of each.")
 
     @property
     def focal_length_px(self) -> float:

@@ -11,7 +11,7 @@ from linepose.config.platform import Platform
 from linepose.config.project import Project
 from linepose.errors import InputError
 from linepose.pipeline.calibrate import CalibrationSettings, calibrate
-from linepose.pipeline.calibration import Calibration, HandMeasured
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.load import read_observations
 from linepose.pipeline.project_folder import find_project, load_platform_project
 from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
@@ -117,19 +117,18 @@ def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
     """
     loaded = _loaded(platform, project)
     settings, study = loaded.platforms[platform], loaded.study
-    hand = settings.hand_measured
     observations = read_observations(settings, recorded_folder(loaded, platform, find_project(project)))
     return calibrate(
         observations,
         settings.intrinsics(),
-        HandMeasured(hand.position_m, hand.euler_deg, hand.sigma_position_m, hand.sigma_euler_deg),
+        settings.hand_measured,
         CalibrationSettings(
             noise_model=settings.noise_model,
             prior=settings.prior,
             threshold_px=study.outliers.threshold_px,
             minimum_observations=study.outliers.minimum_observations,
-            search=study.search.settings(),
-            sampling=study.sampling_of(settings.noise_model).settings(),
+            search=study.search,
+            sampling=study.sampling_of(settings.noise_model),
             seed=study.seed,
         ),
     )

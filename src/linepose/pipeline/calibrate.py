@@ -27,7 +27,7 @@ from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood.names import PUBLISHED
 from linepose.likelihood.prior import pose_prior
-from linepose.pipeline.calibration import Calibration, HandMeasured
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.residual_tables import residual_tables
 from linepose.pipeline.stages import (
     diagnostics_table,
@@ -37,6 +37,7 @@ from linepose.pipeline.stages import (
     sample_table,
     samples_from_table,
 )
+from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.observations import (
     COVARIANCE_COLUMNS,
     EULER_COLUMNS,

@@ -9,24 +9,21 @@ import pandas as pd
 import pyarrow as pa
 
 from linepose.arrays import Floats
-from linepose.errors import InputError
 from linepose.estimation.outliers import removal_order, stage_observations
 from linepose.geometry.pose import (
     N_PARAMETERS,
     euler_covariance,
     euler_pose,
-    rotation_vector_covariance,
-    rotation_vector_pose,
 )
 from linepose.geometry.rotations import matrix_from_rotation_vector
 from linepose.pipeline import result_schemas
 from linepose.pipeline.pose_tables import PoseWithCovariance, quaternion, rotation_vector_numbers
 from linepose.pipeline.summary import gather_evidence
 from linepose.pipeline.verdict import Verdict, judge
+from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.observations import Survey, survey_from_table
 from linepose.tables import write_table
 
-Triple = tuple[float, float, float]
 _TABLES: Final = {
     "observations": result_schemas.OBSERVATIONS,
     "outliers": result_schemas.OUTLIERS,
@@ -37,36 +34,6 @@ _TABLES: Final = {
     "residuals": result_schemas.RESIDUALS,
     "estimated_points": result_schemas.ESTIMATED_POINTS,
 }
-
-
-@dataclass(frozen=True)
-class HandMeasured:
-    """The camera in the body frame by tape measure: forward, right, down (m); roll, pitch, yaw, zyx intrinsic (deg).
-
-    The sigmas are one standard deviation of each coordinate (m) and of each angle (deg).
-    """
-
-    position_m: Triple
-    euler_deg: Triple
-    sigma_position_m: float = 0.1
-    sigma_euler_deg: float = 2.0
-
-    @property
-    def pose(self) -> Floats:
-        """The pose (6,) with a rotation vector, m and rad; raises InputError for a number that is not finite."""
-        return rotation_vector_pose(self._euler_pose())
-
-    @property
-    def covariance(self) -> Floats:
-        """Covariance (6, 6) of the pose with a rotation vector; raises InputError for a sigma that is not positive."""
-        sigma = np.repeat([self.sigma_position_m, np.deg2rad(self.sigma_euler_deg)], 3)
-        if not np.all(np.isfinite(sigma) & (sigma > 0)):
-            found = f"{self.sigma_position_m:g} m, {self.sigma_euler_deg:g} deg"
-            raise InputError("hand-measured sigmas", found, "positive numbers", "say how well the tape was read")
-        return rotation_vector_covariance(self._euler_pose(), np.diag(sigma**2))
-
-    def _euler_pose(self) -> Floats:
-        return np.concatenate([self.position_m, np.deg2rad(self.euler_deg)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from linepose.config.experiments import BasinSection, ExperimentsSection, SubsetSection
-from linepose.config.schema import validated
 from linepose.errors import InputError
+from linepose.settings import validated
 
 RULE = {"angle": "roll", "count": 1}
 

@@ -16,10 +16,12 @@ def message_of(values):
 
 def test_defaults_are_the_papers():
     study = check_study({"platforms": ["robot"]})
-    assert study.search.settings() == Search()
-    assert study.sampling.settings() == SamplingSettings()
-    assert (study.search.settings().half_width_m, study.search.settings().half_width_rad) == (2.0, np.pi)
-    assert study.sampling.settings() == SamplingSettings(250, 100, 100, 2.5, 0.1, 0.01)
+    assert study.search == Search()
+    assert study.sampling == SamplingSettings()
+    assert (study.search.half_width_m, study.search.half_width_rad) == (2.0, np.pi)
+    assert study.sampling == SamplingSettings(
+        n_walkers=250, n_burn_in=100, n_steps=100, stretch_scale=2.5, start_sigma_m=0.1, start_sigma_rad=0.01
+    )
     assert (study.outliers.threshold_px, study.outliers.minimum_observations) == (5.0, 10)
     assert study.data_folders == ["data", "../shared"]
 
@@ -39,8 +41,10 @@ def test_values_reach_the_library_in_its_units():
             },
         }
     )
-    assert study.search.settings() == Search(1.0, np.pi / 2, 1e-3, 1e-4)
-    assert study.sampling.settings() == SamplingSettings(20, 0, 7, 2.0, 0.3, 0.4)
+    assert study.search == Search(half_width_m=1.0, half_width_deg=90.0, x_tolerance=1e-3, f_tolerance=1e-4)
+    assert study.sampling == SamplingSettings(
+        n_walkers=20, n_burn_in=0, n_steps=7, stretch_scale=2.0, start_sigma_m=0.3, start_sigma_rad=0.4
+    )
 
 
 def test_committed_dataset_is_pinned_and_whole(ladybird_dataset):

@@ -29,7 +29,7 @@ def test_start_is_the_middle_and_the_edge_is_never_passed():
 
 
 def test_search_of_the_paper():
-    assert Search() == Search(half_width_m=2.0, half_width_rad=np.pi, x_tolerance=1e-5, f_tolerance=1e-8)
+    assert Search() == Search(half_width_m=2.0, half_width_deg=180.0, x_tolerance=1e-5, f_tolerance=1e-8)
 
 
 def test_optimum_is_the_known_minimum(gaussian, pose_covariance, true_pose):
@@ -55,7 +55,7 @@ def test_evaluations_are_counted(function_likelihood):
 def test_search_stays_within_its_range(function_likelihood):
     likelihood = function_likelihood(lambda p: np.sum((p - 10.0) ** 2, axis=1))
     start = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])
-    found = optimise(likelihood, start, Search(half_width_m=0.5, half_width_rad=0.2))
+    found = optimise(likelihood, start, Search(half_width_m=0.5, half_width_deg=float(np.degrees(0.2))))
     reached = found.parameters - start
     assert np.all(reached <= np.repeat([0.5, 0.2], 3) + 1e-15)
     # the sine ends flat: where -log L changes by less than 1e-8 of itself, a search stops

@@ -19,7 +19,7 @@ class GaussianLikelihood(Likelihood):
 
     def __init__(self, survey: Survey, means: np.ndarray, covariance: np.ndarray):
         self.survey = survey
-        self.camera = Camera(8.2e-3, 7.4e-6, 648, 323.0)
+        self.camera = Camera(focal_length_m=8.2e-3, pixel_pitch_m=7.4e-6, n_pixels=648, principal_point_px=323.0)
         self.means = means
         self.information = np.linalg.inv(covariance)
 
@@ -76,7 +76,15 @@ def make_survey(n_observations: int, seed: int = 3) -> Survey:
 
 @pytest.fixture
 def camera():
-    return Camera(8.2e-3, 4.8e-3 / 648, 648, 323.0, k1=0.02, k2=-0.01, sigmas=CameraSigmas(k1=0.002, k2=0.001))
+    return Camera(
+        focal_length_m=8.2e-3,
+        pixel_pitch_m=4.8e-3 / 648,
+        n_pixels=648,
+        principal_point_px=323.0,
+        k1=0.02,
+        k2=-0.01,
+        sigmas=CameraSigmas(k1=0.002, k2=0.001),
+    )
 
 
 @pytest.fixture

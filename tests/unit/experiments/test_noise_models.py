@@ -15,7 +15,12 @@ from linepose.experiments.schemas import IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
 from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 SHORT = IndependenceSettings(n_walkers=24, n_burn_in=40, n_steps=30)
-SETTINGS = {"published": SamplingSettings(12, 5, 20), "shared": SHORT, "balanced": SHORT, "robust": SHORT}
+SETTINGS = {
+    "published": SamplingSettings(n_walkers=12, n_burn_in=5, n_steps=20),
+    "shared": SHORT,
+    "balanced": SHORT,
+    "robust": SHORT,
+}
 BAD_VIEW = 4
 
 

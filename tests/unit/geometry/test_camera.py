@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
@@ -34,7 +32,7 @@ def test_undistortion_inverts_distortion_to_second_order():
 
 
 def test_pixels_of_an_ideal_camera(camera):
-    ideal = replace(camera, k1=0.0, k2=0.0)
+    ideal = camera.replaced(k1=0.0, k2=0.0)
     assert normalised_from_pixel(ideal, 320.5) == 0.0
     np.testing.assert_allclose(normalised_from_pixel(ideal, 420.5), 0.1, rtol=1e-15)
     np.testing.assert_allclose(pixel_from_normalised(ideal, normalised_from_pixel(ideal, [0.0, 639.0])), [0.0, 639.0])
@@ -58,7 +56,7 @@ def test_every_ray_passes_through_its_point(camera, survey, true_pose, true_poin
 
 
 def test_ray_of_one_pixel(camera):
-    ideal = replace(camera, k1=0.0, k2=0.0)
+    ideal = camera.replaced(k1=0.0, k2=0.0)
     yawed = Rotation.from_euler("z", 90, degrees=True).as_matrix()
     centre, direction = rays(ideal, np.eye(3), [1.0, 0.0, -0.5], yawed, [10.0, 20.0, 0.0], 420.5)
     np.testing.assert_allclose(centre, [10.0, 21.0, -0.5], atol=1e-15)

@@ -9,7 +9,7 @@ from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_
 from linepose.survey.observations import Survey
 
 CAMERA = Camera(focal_length_m=8.0e-3, pixel_pitch_m=8.0e-6, n_pixels=600, principal_point_px=300.0)
-DISTORTED = Camera(8.0e-3, 8.0e-6, 600, 300.0, k1=-0.2, k2=0.1, sigmas=CameraSigmas(v_px=0.8))
+DISTORTED = CAMERA.replaced(k1=-0.2, k2=0.1, sigmas=CameraSigmas(v_px=0.8))
 POSE = np.array([0.2, -0.05, -0.8, -0.8, 0.78, -1.45])  # looks ahead and down, line across the path
 NAVIGATION_SIGMA = np.array([0.01, 0.013, 0.011, 4e-3, 4.6e-3, 1.8e-3])
 CORRELATION = 0.3

@@ -1,7 +1,5 @@
 """Residuals in pixels against derivatives of the plain pixel error, and against the published alternative."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,11 +8,11 @@ from linepose.likelihood.pixels import PixelLikelihood
 from linepose.likelihood.published import PublishedLikelihood
 from unit.likelihood.surveys import DISTORTED_CAMERA, FIELD_CAMERA, INLIERS, SYNTHETIC_POSE, synthetic_survey
 
-CAMERA = replace(DISTORTED_CAMERA, k1=0.0, k2=0.0)
+CAMERA = DISTORTED_CAMERA.replaced(k1=0.0, k2=0.0)
 
 
 def test_without_an_error_of_the_focal_length_it_changes_nothing():
-    camera = replace(CAMERA, sigmas=replace(CAMERA.sigmas, focal_length_m=0.0))
+    camera = CAMERA.replaced(sigmas=CAMERA.sigmas.replaced(focal_length_m=0.0))
     inner = PublishedLikelihood(synthetic_survey(6, 5, seed=1), camera)
     own = PixelLikelihood(inner)
     assert own.log_likelihood(SYNTHETIC_POSE) == pytest.approx(inner.log_likelihood(SYNTHETIC_POSE), rel=1e-12)

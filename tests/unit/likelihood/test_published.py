@@ -188,7 +188,7 @@ def test_selecting_observations():
 
 def test_sigmas_of_the_distortion_count():
     survey = synthetic_survey(5, 6, seed=9)
-    known = replace(DISTORTED_CAMERA, sigmas=CameraSigmas(u_px=0.4, v_px=0.6))
+    known = DISTORTED_CAMERA.replaced(sigmas=CameraSigmas(u_px=0.4, v_px=0.6))
     pose = SYNTHETIC_POSE
     sigma_known = PublishedLikelihood(survey, known).residuals(pose).sigma_px
     sigma_vague = PublishedLikelihood(survey, DISTORTED_CAMERA).residuals(pose).sigma_px

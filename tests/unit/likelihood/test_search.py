@@ -71,7 +71,7 @@ def test_the_robust_model_starts_at_the_optimum_without_tails(likelihood):
 
 def test_a_start_from_which_nothing_is_seen_is_not_called_converged(likelihood):
     away = np.array([*POSE[:3], 2.2, 2.1, -1.0])
-    end = optimise(likelihood, away, Search(half_width_m=1e-3, half_width_rad=1e-3))
+    end = optimise(likelihood, away, Search(half_width_m=1e-3, half_width_deg=0.06))
     assert not end.converged
     with pytest.raises(EstimationError, match="undefined"):
         laplace_covariance(likelihood, end.parameters)

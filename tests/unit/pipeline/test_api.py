@@ -24,7 +24,7 @@ QUICK = linepose.CalibrationSettings(
     threshold_px=50.0, sampling=linepose.SamplingSettings(n_walkers=24, n_burn_in=40, n_steps=60)
 )
 N_PASSES = 16
-BY_HAND = linepose.HandMeasured((0.2, 0.0, -0.8), (-56.0, 0.0, -90.0))
+BY_HAND = linepose.HandMeasured(position_m=(0.2, 0.0, -0.8), euler_deg=(-56.0, 0.0, -90.0))
 
 
 @pytest.fixture(scope="module")

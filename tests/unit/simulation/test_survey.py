@@ -22,7 +22,7 @@ def distances_of_rays_to_points(camera, pose, survey, points):
 
 @pytest.mark.parametrize("k1", [0.0, -0.1])
 def test_ray_of_each_true_pixel_meets_its_point(camera, settings, k1):
-    bent = replace(camera, k1=k1, k2=0.05 * (k1 != 0))
+    bent = camera.replaced(k1=k1, k2=0.05 * (k1 != 0))
     survey, truth = simulate_survey(bent, settings, 0)
     assert np.all(np.isfinite(survey.u_px))
     # time stamps are whole microseconds, but the pose is taken at the exact time
@@ -115,6 +115,6 @@ def test_missing_points_are_not_seen_and_spoil_nothing(camera, settings):
 
 
 def test_points_beyond_the_scan_line_are_not_seen(camera, settings):
-    truth = exact_projections(replace(camera, n_pixels=350), settings)
+    truth = exact_projections(camera.replaced(n_pixels=350), settings)
     assert np.all(truth.u_px[np.isfinite(truth.u_px)] <= 349.5)
     assert np.isnan(truth.u_px).any()

@@ -11,10 +11,10 @@ import yaml
 
 from linepose.config.navigation_formats import SECTIONS
 from linepose.config.platform import Platform, load_platform
-from linepose.config.schema import Section, validated
 from linepose.errors import InputError
 from linepose.inputs.navigation import read_navigation
 from linepose.inputs.navigation.registry import OWN
+from linepose.settings import Settings, validated
 
 PAGE = (Path(__file__).parents[4] / "docs" / "formats.md").read_text()
 VALUES = {
@@ -124,4 +124,4 @@ def test_path_takes_covariances_from_a_file_and_a_format_from_the_log(tmp_path):
 
 
 def test_section_is_frozen():
-    assert all(issubclass(section, Section) and section.model_config["frozen"] for section in SECTIONS.values())
+    assert all(issubclass(section, Settings) and section.model_config["frozen"] for section in SECTIONS.values())

@@ -1,21 +1,49 @@
-"""What stands below both schemas: a closed model, and its faults told in one line."""
+"""Settings: closed, frozen classes that the library and the configuration share, and their faults told in one line.
+
+A class of settings stands in the module whose function takes it; the configuration is composed of these classes, so
+that each default stands once.
+"""
 
 import difflib
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from linepose.errors import InputError, quoted
 
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
 
-class Section(BaseModel):
-    """A part of the configuration in which an unknown key is an error."""
+
+class _FaultsInOneLine(ModelMetaclass):
+    """Lets wrong values in a constructor's call raise an InputError; pydantic itself builds nested ones otherwise."""
+
+    if not TYPE_CHECKING:
+
+        def __call__(self, *args: Any, **values: Any) -> Any:
+            try:
+                return super().__call__(*args, **values)
+            except ValidationError as error:
+                raise _first_fault(self, error, self.__name__) from None
+
+
+class Settings(BaseModel, metaclass=_FaultsInOneLine):
+    """A group of settings: an unknown key is an error, and so is a value that is not finite or out of its range.
+
+    Raises InputError where it is made with wrong values.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    def replaced(self, **changes: Any) -> Self:
+        """These settings with other values of some keys, checked like those given first; raises InputError."""
+        return type(self)(**{name: getattr(self, name) for name in type(self).model_fields} | changes)
 
-Model = TypeVar("Model", bound=Section)
+
+Model = TypeVar("Model", bound=Settings)
 
 
 def validated(model: type[Model], values: Any, place: str) -> Model:
@@ -23,14 +51,12 @@ def validated(model: type[Model], values: Any, place: str) -> Model:
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        faults = error.errors()
-        unknown = next((fault for fault in faults if fault["type"] == "extra_forbidden"), None)
-        raise _one_line(model, unknown or faults[0], place) from None  # a misspelt key explains why one is missing
+        raise _first_fault(model, error, place) from None
     except InputError as error:  # of a section that another part of the library checks
         raise InputError(f"{place}: {error.place}", error.found, error.expected, error.remedy) from None
 
 
-def faults_of(model: type[Section], values: Any, place: str) -> list[InputError]:
+def faults_of(model: type[Settings], values: Any, place: str) -> list[InputError]:
     """Every fault of the values as a model, misspelt keys first; none where they are right."""
     try:
         model.model_validate(values)
@@ -42,7 +68,13 @@ def faults_of(model: type[Section], values: Any, place: str) -> list[InputError]
     return []
 
 
-def _one_line(model: type[Section], fault: ErrorDetails, place: str) -> InputError:
+def _first_fault(model: type[Settings], error: ValidationError, place: str) -> InputError:
+    faults = error.errors()
+    unknown = next((fault for fault in faults if fault["type"] == "extra_forbidden"), None)
+    return _one_line(model, unknown or faults[0], place)  # a misspelt key explains why one is missing
+
+
+def _one_line(model: type[Settings], fault: ErrorDetails, place: str) -> InputError:
     location = [str(part) for part in fault["loc"]]
     named = fault["type"] in {"extra_forbidden", "missing"}  # the last part is then a key that is not to be looked up
     keys, known = _walk(model, location[:-1] if named else location)
@@ -65,7 +97,7 @@ def _expected(message: str) -> str:
     return message[:1].lower() + message[1:]
 
 
-def _walk(model: type[Section], location: list[str]) -> tuple[list[str], list[str]]:
+def _walk(model: type[Settings], location: list[str]) -> tuple[list[str], list[str]]:
     """The keys of a location, and those of the section there, as far as the schema tells.
 
     A location also names the kind (`scans`, `sbet`) by which pydantic chose among sections; nobody wrote it as a key.

@@ -3,26 +3,26 @@ from typing import Annotated, Literal
 import pytest
 from pydantic import Field, PositiveInt
 
-from linepose.config.schema import Section, validated
 from linepose.errors import InputError
+from linepose.settings import Settings, validated
 
 
-class Lens(Section):
+class Lens(Settings):
     focal_length_m: float
     k1: float = 0.0
 
 
-class ByFile(Section):
+class ByFile(Settings):
     kind: Literal["file"]
     path: str = ""
 
 
-class ByNumber(Section):
+class ByNumber(Settings):
     kind: Literal["number"]
     value: int = 0
 
 
-class Settings(Section):
+class Whole(Settings):
     lens: Lens
     count: PositiveInt = 1
     corner: tuple[float, float] = (0.0, 0.0)
@@ -35,23 +35,23 @@ GOOD = {"lens": {"focal_length_m": 0.008}}
 
 def message_of(values):
     with pytest.raises(InputError) as error:
-        validated(Settings, values, "s.yaml")
+        validated(Whole, values, "s.yaml")
     return str(error.value)
 
 
 def test_values_become_a_model():
-    settings = validated(Settings, GOOD | {"count": 3, "corner": [1, 2.5]}, "s.yaml")
+    settings = validated(Whole, GOOD | {"count": 3, "corner": [1, 2.5]}, "s.yaml")
     assert settings.lens.focal_length_m == 0.008
     assert settings.corner == (1.0, 2.5)
 
 
 def test_number_that_yaml_takes_for_text_is_a_number():
-    assert validated(Settings, {"lens": {"focal_length_m": "1e-4"}}, "s.yaml").lens.focal_length_m == 1e-4
+    assert validated(Whole, {"lens": {"focal_length_m": "1e-4"}}, "s.yaml").lens.focal_length_m == 1e-4
 
 
 def test_models_do_not_change():
     with pytest.raises(ValueError, match="frozen"):
-        validated(Settings, GOOD, "s.yaml").count = 2
+        validated(Whole, GOOD, "s.yaml").count = 2
 
 
 @pytest.mark.parametrize(
@@ -116,3 +116,18 @@ def test_unknown_key_of_one_kind_among_several_is_refused():
     message = message_of(GOOD | {"source": {"kind": "file", "pth": "x"}})
     assert "pth: found an unknown key" in message
     assert "\n" not in message
+
+
+def test_wrong_values_in_python_are_told_in_one_line():
+    with pytest.raises(InputError) as error:
+        Lens(focal_length_m=0.008, k11=1.0)
+    assert str(error.value) == ("Lens: k11: found an unknown key, expected one of focal_length_m, k1; did you mean k1?")
+    with pytest.raises(InputError, match=r"Whole: lens\.focal_length_m: found 'x', expected a valid number"):
+        Whole(lens={"focal_length_m": "x"})
+
+
+def test_replaced_values_are_checked():
+    lens = Lens(focal_length_m=0.008)
+    assert lens.replaced(k1=0.5) == Lens(focal_length_m=0.008, k1=0.5)
+    with pytest.raises(InputError, match="Lens: k1: found 'x', expected a valid number"):
+        lens.replaced(k1="x")

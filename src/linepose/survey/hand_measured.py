@@ -1,0 +1,36 @@
+"""The camera's pose on the vehicle as read from a tape measure: the start of the search, or a prior."""
+
+import numpy as np
+from pydantic import Field, PositiveFloat
+
+from linepose.arrays import Floats
+from linepose.geometry.pose import rotation_vector_covariance, rotation_vector_pose
+from linepose.settings import Settings
+
+Triple = tuple[float, float, float]
+
+
+class HandMeasured(Settings):
+    """The camera in the body frame by tape measure: forward, right, down (m); roll, pitch, yaw, zyx intrinsic (deg).
+
+    The sigmas are one standard deviation of each coordinate (m) and of each angle (deg).
+    """
+
+    position_m: Triple = Field(description="Camera in the body frame: forward, right, down (m).")
+    euler_deg: Triple = Field(description="Camera to body: roll, pitch, yaw, zyx intrinsic (deg).")
+    sigma_position_m: PositiveFloat = Field(0.1, description="One standard deviation of each coordinate (m).")
+    sigma_euler_deg: PositiveFloat = Field(2.0, description="One standard deviation of each angle (deg).")
+
+    @property
+    def pose(self) -> Floats:
+        """The pose (6,) with a rotation vector, m and rad."""
+        return rotation_vector_pose(self._euler_pose())
+
+    @property
+    def covariance(self) -> Floats:
+        """Covariance (6, 6) of the pose with a rotation vector."""
+        sigma = np.repeat([self.sigma_position_m, np.deg2rad(self.sigma_euler_deg)], 3)
+        return rotation_vector_covariance(self._euler_pose(), np.diag(sigma**2))
+
+    def _euler_pose(self) -> Floats:
+        return np.concatenate([self.position_m, np.deg2rad(self.euler_deg)])
