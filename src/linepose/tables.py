@@ -61,3 +61,28 @@ def write_csv(table: pd.DataFrame, path: Path | str) -> None:
     """Write a table as CSV for people and spreadsheets, ten significant digits."""
     with atomic_write(path) as temporary:
         table.to_csv(temporary, index=False, float_format="%.10g", lineterminator="\n")
+
+
+def floats(*names: str) -> list[pa.Field]:
+    """Columns of real numbers."""
+    return [pa.field(name, pa.float64(), nullable=False) for name in names]
+
+
+def optional_floats(*names: str) -> list[pa.Field]:
+    """Columns of real numbers that are null where there is none."""
+    return [pa.field(name, pa.float64()) for name in names]
+
+
+def whole_numbers(*names: str) -> list[pa.Field]:
+    """Columns of whole numbers."""
+    return [pa.field(name, pa.int64(), nullable=False) for name in names]
+
+
+def texts(*names: str) -> list[pa.Field]:
+    """Columns of text."""
+    return [pa.field(name, pa.string(), nullable=False) for name in names]
+
+
+def flags(*names: str) -> list[pa.Field]:
+    """Columns of yes or no."""
+    return [pa.field(name, pa.bool_(), nullable=False) for name in names]

@@ -12,11 +12,7 @@ from linepose.experiments.clock_offset import CORRELATION_COLUMNS
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.experiments.noise_models import EXTRA_PARAMETERS, LEVEL_COLUMNS
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.pipeline.result_schemas import flags, floats, texts, whole_numbers
-
-
-def _optional(*names: str) -> list[pa.Field]:
-    return [pa.field(name, pa.float64()) for name in names]
+from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
 
 def _estimate(suffix: str = "") -> list[pa.Field]:
@@ -24,13 +20,13 @@ def _estimate(suffix: str = "") -> list[pa.Field]:
         *whole_numbers(f"n_observations{suffix}"),
         *texts(f"observations{suffix}"),
         *floats(*(f"{name}{suffix}" for name in POSE_COLUMNS)),
-        *_optional(*(f"{name}{suffix}" for name in SIGMA_COLUMNS)),
+        *optional_floats(*(f"{name}{suffix}" for name in SIGMA_COLUMNS)),
         *floats(f"neg_log_likelihood{suffix}"),
         *whole_numbers(f"n_evaluations{suffix}"),
     ]
 
 
-_AGREEMENT: Final = [*floats("distance_m", "angle_rad"), *_optional("mahalanobis", "p_value")]
+_AGREEMENT: Final = [*floats("distance_m", "angle_rad"), *optional_floats("mahalanobis", "p_value")]
 
 SUBSETS: Final = pa.schema([*texts("subset"), *_estimate()])
 REPEATABILITY: Final = pa.schema([*texts("subset"), *_estimate(), *_AGREEMENT])
@@ -55,21 +51,21 @@ BASIN_SUMMARY: Final = pa.schema(
     [
         *texts("optimiser", "region"),
         *whole_numbers("n_starts", "n_successes"),
-        *_optional("success_rate", "success_rate_low", "success_rate_high", "median_n_evaluations"),
+        *optional_floats("success_rate", "success_rate_low", "success_rate_high", "median_n_evaluations"),
     ]
 )
 MAPPING: Final = pa.schema(
     [
         *texts("pose"),
         *whole_numbers("observation", "point"),
-        *_optional(*PROJECTED_COLUMNS, *PROJECTED_COVARIANCE_COLUMNS),
+        *optional_floats(*PROJECTED_COLUMNS, *PROJECTED_COVARIANCE_COLUMNS),
     ]
 )
 MAPPING_SUMMARY: Final = pa.schema(
     [
         *texts("pose", "observations"),
         *whole_numbers("n_projected"),
-        *_optional("spread_mm", "sigma_mm"),
+        *optional_floats("spread_mm", "sigma_mm"),
         *floats("normal_north", "normal_east", "normal_down", "plane_rms_mm", "equation_26_angle_rad"),
     ]
 )
@@ -77,11 +73,11 @@ NOISE_MODELS: Final = pa.schema(
     [
         *texts("noise_model", "set"),
         *_estimate(),
-        *_optional(*EXTRA_PARAMETERS, *LEVEL_COLUMNS),
+        *optional_floats(*EXTRA_PARAMETERS, *LEVEL_COLUMNS),
         *floats("effective_sample_size", "split_r_hat"),
         *texts("warning"),
         *floats("distance_m", "angle_rad", "mahalanobis"),
-        *_optional("position_error_m", "rotation_error_rad", "error_in_sigmas"),
+        *optional_floats("position_error_m", "rotation_error_rad", "error_in_sigmas"),
     ]
 )
 IDENTIFIABILITY: Final = pa.schema(
@@ -107,7 +103,7 @@ CONSISTENCY_SUMMARY: Final = pa.schema(
     [
         *texts("noise_model", "comparison"),
         *whole_numbers("n_splits", "n_open"),
-        *_optional(
+        *optional_floats(
             "median_distance",
             "sigma_factor",
             "share_beyond_68",
@@ -117,7 +113,7 @@ CONSISTENCY_SUMMARY: Final = pa.schema(
         ),
     ]
 )
-SENSITIVITY: Final = pa.schema([*texts("change"), *_estimate(), *_AGREEMENT[:2], *_optional("mahalanobis")])
+SENSITIVITY: Final = pa.schema([*texts("change"), *_estimate(), *_AGREEMENT[:2], *optional_floats("mahalanobis")])
 PUBLISHED_NAVIGATION: Final = pa.schema(
     [*texts("platform", "quantity"), *floats("published", "obtained", "relative_difference")]
 )
@@ -141,7 +137,7 @@ CLOCK_OFFSET: Final = pa.schema(
         *whole_numbers("n_observations"),
         *texts("observations"),
         *floats("offset_s", "sigma_s", "sampled_sigma_s"),
-        *_optional("laplace_sigma_s", "jackknife_sigma_s"),
+        *optional_floats("laplace_sigma_s", "jackknife_sigma_s"),
         *floats("maximum_s", "shrinkage", "correlation_pose", *CORRELATION_COLUMNS),
         *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
         *floats(*(f"{name}_without" for name in (*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood")), "mahalanobis"),

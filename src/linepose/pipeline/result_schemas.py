@@ -9,6 +9,7 @@ from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS
 from linepose.survey import navigation
 from linepose.survey.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS
+from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
 LAPLACE_SIGMA_COLUMNS: Final = tuple(f"laplace_{name}" for name in SIGMA_COLUMNS)
 
@@ -16,26 +17,6 @@ LAPLACE_SIGMA_COLUMNS: Final = tuple(f"laplace_{name}" for name in SIGMA_COLUMNS
 def laplace_sigma_columns(names: Sequence[str]) -> tuple[str, ...]:
     """Columns of the curvature's sigmas of these parameters."""
     return tuple(f"laplace_sigma_{name}" for name in names)
-
-
-def floats(*names: str) -> list[pa.Field]:
-    """Columns of real numbers."""
-    return [pa.field(name, pa.float64(), nullable=False) for name in names]
-
-
-def whole_numbers(*names: str) -> list[pa.Field]:
-    """Columns of whole numbers."""
-    return [pa.field(name, pa.int64(), nullable=False) for name in names]
-
-
-def texts(*names: str) -> list[pa.Field]:
-    """Columns of text."""
-    return [pa.field(name, pa.string(), nullable=False) for name in names]
-
-
-def flags(*names: str) -> list[pa.Field]:
-    """Columns of yes or no."""
-    return [pa.field(name, pa.bool_(), nullable=False) for name in names]
 
 
 _POINT = [*whole_numbers("observation", "point", "time_us"), *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS)]
@@ -111,9 +92,7 @@ ESTIMATED_POINTS: Final = pa.schema(
     [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS, *POINT_COVARIANCE_COLUMNS)]
 )
 FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
-MAP_FRAME: Final = pa.schema(
-    [*texts("crs"), *(pa.field(name, pa.float64()) for name in ("latitude_deg", "longitude_deg", "height_m"))]
-)
+MAP_FRAME: Final = pa.schema([*texts("crs"), *optional_floats("latitude_deg", "longitude_deg", "height_m")])
 NAVIGATION_SIGMA: Final = pa.schema(floats(*navigation.SIGMA_COLUMNS))
 TRUTH_ERROR: Final = pa.schema(
     [
