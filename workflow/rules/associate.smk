@@ -12,6 +12,6 @@ rule associate:
     params:
         platform=settings,
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=source_digest("linepose.pipeline.load"),
+        code=script_digest("associate"),
     script:
         "../../scripts/associate.py"

@@ -18,11 +18,6 @@ rule basin:
         search=section("search"),
         seed=STUDY.seed,
         work="results/{platform}/work/basin",
-        code=[
-            source_digest("linepose.experiments.basin"),
-            source_digest("linepose.pipeline.batches"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("basin"),
     script:
         "../../scripts/basin.py"

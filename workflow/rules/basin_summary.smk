@@ -9,6 +9,6 @@ rule basin_summary:
         "../../environment.yml"
     params:
         basin=experiment("basin"),
-        code=source_digest("linepose.experiments.basin"),
+        code=script_digest("basin_summary"),
     script:
         "../../scripts/basin_summary.py"

@@ -10,6 +10,6 @@ rule check_data:
     params:
         folder=lambda wildcards: str(PROJECT.folders[wildcards.dataset]),
         sha256=lambda wildcards: PROJECT.sums(wildcards.dataset),
-        code=source_digest("linepose.survey.datasets"),
+        code=script_digest("check_data"),
     script:
         "../../scripts/check_data.py"

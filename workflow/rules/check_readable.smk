@@ -10,6 +10,6 @@ rule check_readable:
     params:
         platform=settings,
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=source_digest("linepose.pipeline.load"),
+        code=script_digest("check_readable"),
     script:
         "../../scripts/check_readable.py"

@@ -21,11 +21,6 @@ rule clock_offset:
         search=section("search"),
         sampling=sampling,
         seed=STUDY.seed,
-        code=[
-            source_digest("linepose.experiments.clock_offset"),
-            source_digest("linepose.pipeline.load"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("clock_offset"),
     script:
         "../../scripts/clock_offset.py"

@@ -9,7 +9,7 @@ from linepose.config.project import load_project
 from linepose.survey.datasets import can_be_reached
 from linepose.errors import LineposeError
 from linepose.likelihood.names import NoiseModelName
-from linepose.pipeline.provenance import files_digest, source_digest
+from linepose.pipeline import code_digest
 from linepose.tables import read_table
 
 
@@ -84,3 +84,9 @@ def sampling(wildcards):
 def section(key):
     """What config.yaml says under this key, as a rule's parameter."""
     return getattr(STUDY, key).model_dump(mode="json")
+
+
+def script_digest(name, *modules):
+    """Digest of a script's code, and of modules that it imports by name, as the rule's parameter `code`."""
+    script = workflow.source_path(f"../../scripts/{name}.py")
+    return code_digest.script_digest(script, *modules)

@@ -6,6 +6,6 @@ rule compile:
     conda:
         "../../environment.yml"
     params:
-        code=source_digest("linepose.estimation.warm_up"),
+        code=script_digest("compile"),
     script:
         "../../scripts/compile.py"

@@ -23,11 +23,6 @@ rule consistency:
         search=section("search"),
         seed=STUDY.seed,
         work="results/{platform}/work/consistency",
-        code=[
-            source_digest("linepose.experiments.consistency"),
-            source_digest("linepose.pipeline.batches"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("consistency"),
     script:
         "../../scripts/consistency.py"

@@ -23,10 +23,7 @@ rule coverage_cell:
         ),
         batch_size=STUDY.coverage.batch_size,
         work="results/coverage/work/{platform}-{regime}-{noise_model}",
-        code=[
-            source_digest("linepose.experiments.coverage"),
-            source_digest("linepose.pipeline.batches"),
-        ],
+        code=script_digest("coverage_cell"),
     script:
         "../../scripts/coverage_cell.py"
 
@@ -46,9 +43,6 @@ rule coverage:
     conda:
         "../../environment.yml"
     params:
-        code=[
-            source_digest("linepose.experiments.coverage_table"),
-            source_digest("linepose.output.figures.coverage"),
-        ],
+        code=script_digest("coverage_summary"),
     script:
         "../../scripts/coverage_summary.py"  # numba imports whatever is called coverage

@@ -12,6 +12,6 @@ rule diagnose:
     params:
         platform=settings,
         sampling=sampling,
-        code=source_digest("linepose.pipeline.stages"),
+        code=script_digest("diagnose"),
     script:
         "../../scripts/diagnose.py"

@@ -11,6 +11,6 @@ rule extract:
     params:
         platform=settings,
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=source_digest("linepose.pipeline.load"),
+        code=script_digest("extract"),
     script:
         "../../scripts/extract.py"

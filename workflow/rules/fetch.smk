@@ -17,6 +17,6 @@ for key in PROJECT.datasets:
         params:
             dataset=key,
             searched=STUDY.data_folders,
-            code=source_digest("linepose.survey.datasets"),
+            code=script_digest("fetch"),
         script:
             "../../scripts/fetch.py"

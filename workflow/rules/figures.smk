@@ -29,6 +29,6 @@ rule figures:
         ),
         outliers=section("outliers"),
         folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
-        code=source_digest("linepose.output.figures.render"),
+        code=script_digest("figures"),
     script:
         "../../scripts/figures.py"

@@ -14,10 +14,6 @@ rule leave_one_out:
     params:
         platform=settings,
         search=section("search"),
-        code=[
-            source_digest("linepose.experiments.repeatability"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("leave_one_out"),
     script:
         "../../scripts/leave_one_out.py"

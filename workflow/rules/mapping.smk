@@ -15,10 +15,6 @@ rule mapping:
     params:
         platform=settings,
         mapping=experiment("mapping"),
-        code=[
-            source_digest("linepose.experiments.mapping"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("mapping"),
     script:
         "../../scripts/mapping.py"

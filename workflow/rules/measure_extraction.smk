@@ -14,6 +14,6 @@ rule measure_extraction:
         "../../environment.yml"
     params:
         platform=settings,
-        code=source_digest("linepose.inputs.targets.measured"),
+        code=script_digest("measure_extraction"),
     script:
         "../../scripts/measure_extraction.py"

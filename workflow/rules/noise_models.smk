@@ -26,10 +26,6 @@ rule noise_models:
         sampling=section("sampling"),
         independence_sampling=section("independence_sampling"),
         seed=STUDY.seed,
-        code=[
-            source_digest("linepose.experiments.noise_models"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("noise_models"),
     script:
         "../../scripts/noise_models.py"

@@ -12,9 +12,6 @@ rule optimise:
     params:
         platform=settings,
         search=section("search"),
-        code=[
-            source_digest("linepose.pipeline.stages"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("optimise"),
     script:
         "../../scripts/optimise.py"

@@ -13,10 +13,6 @@ rule prior:
         "../../environment.yml"
     params:
         platform=settings,
-        code=[
-            source_digest("linepose.experiments.prior"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("prior"),
     script:
         "../../scripts/prior.py"

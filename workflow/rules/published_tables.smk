@@ -27,6 +27,6 @@ rule published_tables:
     params:
         platform=COMPARED[0] if COMPARED else "",
         folder=lambda wildcards, output: str(Path(output[0]).parent),
-        code=source_digest("linepose.paper.tables"),
+        code=script_digest("published_tables"),
     script:
         "../../scripts/published_tables.py"

@@ -69,10 +69,7 @@ rule regression:
         compared=COMPARED,
         swept=SWEPT,
         on_truth=REGRESSED_ON_TRUTH,
-        code=[
-            source_digest("linepose.paper.experiments_regression"),
-            source_digest("linepose.paper.simulated_regression"),
-        ],
+        code=script_digest("regression"),
     script:
         "../../scripts/regression.py"
 
@@ -87,6 +84,6 @@ rule check_regression:
     conda:
         "../../environment.yml"
     params:
-        code=source_digest("linepose.paper.regression"),
+        code=script_digest("check_regression"),
     script:
         "../../scripts/check_regression.py"

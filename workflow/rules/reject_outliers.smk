@@ -12,9 +12,6 @@ rule reject_outliers:
         platform=settings,
         outliers=section("outliers"),
         search=section("search"),
-        code=[
-            source_digest("linepose.estimation.outliers"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("reject_outliers"),
     script:
         "../../scripts/reject_outliers.py"

@@ -17,10 +17,6 @@ rule repeatability:
         search=section("search"),
         sampling=sampling,
         seed=STUDY.seed,
-        code=[
-            source_digest("linepose.experiments.repeatability"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("repeatability"),
     script:
         "../../scripts/repeatability.py"

@@ -25,10 +25,6 @@ rule report:
             name: PROJECT.platforms[name].model_dump(mode="json") for name in PLATFORMS
         },
         study=STUDY.model_dump(mode="json"),
-        code=[
-            source_digest("linepose.output.report.assemble"),
-            source_digest("linepose.paper.report_sections"),
-        ],
-        templates=files_digest("output/report/templates"),
+        code=script_digest("report"),
     script:
         "../../scripts/report.py"

@@ -13,9 +13,6 @@ rule residuals:
         "../../environment.yml"
     params:
         platform=settings,
-        code=[
-            source_digest("linepose.pipeline.residual_tables"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("residuals"),
     script:
         "../../scripts/residuals.py"

@@ -15,9 +15,6 @@ rule sample:
         platform=settings,
         sampling=sampling,
         seed=STUDY.seed,
-        code=[
-            source_digest("linepose.pipeline.stages"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("sample"),
     script:
         "../../scripts/sample.py"

@@ -15,11 +15,6 @@ rule sensitivity:
         platform=settings,
         others=settings_of_others("sensitivity"),
         search=section("search"),
-        code=[
-            source_digest("linepose.experiments.sensitivity"),
-            source_digest("linepose.likelihood.pixels"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("sensitivity"),
     script:
         "../../scripts/sensitivity.py"

@@ -12,6 +12,6 @@ rule simulate:
     params:
         camera=lambda wildcards: settings(wildcards)["camera"],
         simulation=lambda wildcards: settings(wildcards)["simulation"],
-        code=source_digest("linepose.simulation.record"),
+        code=script_digest("simulate"),
     script:
         "../../scripts/simulate.py"

@@ -18,11 +18,6 @@ rule splits:
         search=section("search"),
         seed=STUDY.seed,
         work="results/{platform}/work/splits",
-        code=[
-            source_digest("linepose.experiments.repeatability"),
-            source_digest("linepose.pipeline.batches"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("splits"),
     script:
         "../../scripts/splits.py"

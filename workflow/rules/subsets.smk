@@ -17,10 +17,6 @@ rule subsets:
         search=section("search"),
         sampling=sampling,
         seed=STUDY.seed,
-        code=[
-            source_digest("linepose.experiments.subsets"),
-            source_digest("linepose.experiments.accepted"),
-            source_digest("linepose.estimation.noise_models"),
-        ],
+        code=script_digest("subsets"),
     script:
         "../../scripts/subsets.py"

@@ -10,6 +10,6 @@ rule truth_error:
     conda:
         "../../environment.yml"
     params:
-        code=source_digest("linepose.experiments.truth_error"),
+        code=script_digest("truth_error"),
     script:
         "../../scripts/truth_error.py"

@@ -9,6 +9,6 @@ rule uncertainty:
     conda:
         "../../environment.yml"
     params:
-        code=source_digest("linepose.experiments.uncertainty"),
+        code=script_digest("uncertainty"),
     script:
         "../../scripts/uncertainty.py"
