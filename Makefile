@@ -34,7 +34,7 @@ check: $(STAMP) ## Style, types and the workflow's own lint
 bench: $(STAMP) ## Measure speed on this machine
 	@for name in machine likelihood pipeline experiments workflow scans shared; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
 
-readme-bench: $(STAMP) ## Measure speed and put the figures into README.md; on a machine that does nothing else
+readme-bench: $(STAMP) ## Measure speed and put the figures into docs/benchmarks.md and README.md; on a machine that does nothing else
 	@mkdir -p build
 	$(MAKE) --silent bench > build/bench.txt
 	$(BIN)/python benchmarks/into_readme.py < build/bench.txt

@@ -42,7 +42,7 @@ def main() -> None:
         sys.exit(run.stderr)
     spent = resource.getrusage(resource.RUSAGE_CHILDREN)
     processor_s = spent.ru_utime + spent.ru_stime
-    print(f"The whole workflow on the field data ({', '.join(platforms)}), from clean: snakemake --cores {cores}\n")
+    print(f"The whole workflow on the field data ({', '.join(platforms)}), from clean, {cores} cores: ", end="")
     print(f"{seconds:.0f} s, {processor_s:.0f} s of processor time; to reach: {TO_REACH_S} s")
 
 

@@ -1,6 +1,5 @@
 """`linepose run NAME`: the workflow for one platform, Snakemake as a subprocess."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -37,7 +36,7 @@ def run(
     if not (root / study.published).is_file():  # a project beside the clone regresses on the clone's numbers
         settings.append(f"published={snakefile.parent / study.published}")
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(snakefile), "--directory", str(root)]
-    command += ["--cores", str(cores or len(os.sched_getaffinity(0))), "--quiet", "host", "rules"]
+    command += ["--cores", str(cores or "all"), "--quiet", "host", "rules"]
     command += ["--config", *settings, *(["--dry-run"] if dry_run else [])]
     finished = subprocess.run([*command, *(further or [])], check=False)
     if finished.returncode:
