@@ -15,3 +15,5 @@ from linepose.pipeline.calibrate import CalibrationSettings as CalibrationSettin
 from linepose.pipeline.calibrate import calibrate as calibrate
 from linepose.pipeline.calibration import Calibration as Calibration
 from linepose.survey.hand_measured import HandMeasured as HandMeasured
+
+__version__: str

@@ -1,7 +1,10 @@
 """All commands under one name, and how their faults are told."""
 
+from typing import Annotated
+
 import typer
 
+import linepose
 from linepose.cli import check, export, label, new, run, show
 from linepose.cli.faults import OneLineFaults
 
@@ -18,6 +21,23 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def _tell_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"linepose {linepose.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Tell the version.")
+    ] = False,
+) -> None:
+    """Options that stand before a command; the program's help stands above."""
+
+
 app.command(name="new")(new.new)
 app.command(name="label")(label.label)
 app.command(name="check")(check.check)
