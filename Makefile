@@ -7,7 +7,7 @@ STAMP := .venv/installed
 
 SHELL := bash
 
-.PHONY: help reproduce test check bench readme-bench reference images lock clean
+.PHONY: help reproduce test check docs bench readme-bench reference images lock clean
 
 help: ## What can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -30,6 +30,9 @@ check: $(STAMP) ## Style, types and the workflow's own lint
 	$(BIN)/mypy
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakefmt --check Snakefile workflow
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
+
+docs: $(STAMP) ## Build the documentation site in build/docs; a warning is an error
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs build/docs
 
 bench: $(STAMP) ## Measure speed on this machine
 	@for name in machine likelihood pipeline experiments workflow scans shared; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done

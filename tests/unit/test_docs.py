@@ -1,12 +1,48 @@
-"""The examples in the documentation run as they stand there."""
+"""The documentation is true: its examples run, and the commands, files and modules that it names exist."""
 
+import importlib
 import re
+import shlex
+from functools import cache
 from pathlib import Path
 
 import pytest
+import typer
 
-DOCS = Path(__file__).parents[2] / "docs"
+from linepose.cli.app import app
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "config" / "README.md", *sorted(DOCS.glob("*.md"))]
+PAGES = [page for page in PAGES if page.exists()]
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+CODE = re.compile(r"^```\w*\n(.*?)^```$|^    (\S[^\n]*)$|`([^`\n]+)`", re.MULTILINE | re.DOTALL)
+FOLDERS = "src|docs|config|workflow|scripts|benchmarks|tests|profiles|\\.github|\\.ci"
+NOT_MODULES = {"linepose.navigation_formats"}  # an entry point group
+
+
+def code_of(page: Path) -> list[str]:
+    """What a page sets as code: rows of its blocks, and code within sentences."""
+    return [
+        row.split("#")[0].strip() for match in CODE.findall(page.read_text()) for row in "".join(match).splitlines()
+    ]
+
+
+def commands_of(page: Path, program: str) -> list[list[str]]:
+    """The words of each command of a program."""
+    rows = [row for row in code_of(page) if row.startswith(f"{program} ")]
+    return [shlex.split(row.split(" && ")[0], posix=False) for row in rows]
+
+
+@cache
+def options() -> dict[str, set[str]]:
+    """The options that each command of `linepose` has."""
+    group = typer.main.get_command(app)
+    of_commands = {name: {o for p in command.params for o in p.opts} for name, command in group.commands.items()}
+    return of_commands | {"": {o for p in group.params for o in p.opts} | {"--help"}}
+
+
+every_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 
 
 @pytest.mark.parametrize("page", ["conventions.md"])
@@ -19,7 +55,77 @@ def test_python_examples_run(page):
         exec(compile(block, page, "exec"), namespace)
 
 
-@pytest.mark.parametrize("page", sorted(DOCS.glob("*.md")), ids=lambda page: page.name)
+@every_page
 def test_links_and_pictures_exist(page):
-    for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text()):
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
         assert (page.parent / target).exists(), target
+
+
+@every_page
+def test_commands_of_linepose_and_their_options_exist(page):
+    for words in commands_of(page, "linepose"):
+        command = words[1] if re.fullmatch("[a-z]+", words[1]) else ""
+        if command != "COMMAND" and words[1] != "COMMAND":
+            assert command in options(), words
+            asked = {word.split("=")[0] for word in words[1:] if re.match("--?[a-z]", word)}
+            assert asked <= options()[command] | {"--help"}, words
+
+
+@every_page
+def test_targets_of_make_exist(page):
+    makefile = (ROOT / "Makefile").read_text()
+    for words in commands_of(page, "make"):
+        target = words[1]
+        assert re.search(rf"^{re.escape(target)}:", makefile, re.MULTILINE) or f":= {target}\n" in makefile, words
+
+
+@every_page
+def test_targets_of_snakemake_are_rules(page):
+    rules = "".join(file.read_text() for file in (ROOT / "workflow" / "rules").glob("*.smk"))
+    for words in commands_of(page, "snakemake"):
+        for target in (word for word in words[1:] if re.fullmatch("[a-z_]+", word)):
+            assert f"rule {target}:" in rules, words
+
+
+@every_page
+def test_files_named_exist(page):
+    named = re.findall(
+        rf"(?:^|[\s(`])((?:{FOLDERS})/[\w./-]*\w)(?=[`\s,.:;)]|$)", "\n".join(code_of(page)), re.MULTILINE
+    )
+    placeholders = re.compile(r"[A-Z]{3,}|myrobot")
+    missing = [name for name in named if not placeholders.search(name) and not (ROOT / name).exists()]
+    assert missing == []
+
+
+@every_page
+def test_modules_named_can_be_imported(page):
+    for name in set(re.findall(r"\blinepose(?:\.[A-Za-z_]+)+", "\n".join(code_of(page)))) - NOT_MODULES:
+        parts = name.split(".")
+        found: object = importlib.import_module("linepose")
+        for depth, part in enumerate(parts[1:], start=2):
+            try:
+                found = getattr(found, part)
+            except AttributeError:
+                found = importlib.import_module(".".join(parts[:depth]))
+
+
+@every_page
+def test_scripts_of_python_exist(page):
+    for words in commands_of(page, "python"):
+        assert (ROOT / words[1]).is_file(), words
+
+
+def test_every_public_page_is_on_the_site():
+    index = (DOCS / "index.md").read_text()
+    for page in DOCS.glob("*.md"):
+        assert page.stem == "index" or re.search(rf"^{page.stem}$", index, re.MULTILINE), page.name
+
+
+def test_readme_fits_two_screens():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 95
+
+
+def test_makefile_helps_with_every_target():
+    makefile = (ROOT / "Makefile").read_text()
+    targets = re.search(r"^\.PHONY: (.*)$", makefile, re.MULTILINE).group(1).split()
+    assert targets == re.findall(r"^([a-z-]+):.*## \S", makefile, re.MULTILINE)
