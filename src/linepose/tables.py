@@ -2,7 +2,7 @@
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -86,3 +86,8 @@ def texts(*names: str) -> list[pa.Field]:
 def flags(*names: str) -> list[pa.Field]:
     """Columns of yes or no."""
     return [pa.field(name, pa.bool_(), nullable=False) for name in names]
+
+
+def with_parameters(schema: pa.Schema, names: Sequence[str]) -> pa.Schema:
+    """The schema with the columns of a noise model's own parameters at its end."""
+    return pa.schema([*schema, *floats(*names)])

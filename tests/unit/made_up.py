@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from linepose.config.platform import Platform
+from linepose.estimation.outliers import OUTLIERS
 from linepose.experiments import schemas
 from linepose.experiments.basin import START_COLUMNS, Region, summarise
 from linepose.experiments.clock_offset import CORRELATION_COLUMNS
@@ -13,10 +14,9 @@ from linepose.experiments.consistency import summarise_consistency
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.experiments.noise_models import EXTRA_PARAMETERS
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.pipeline import result_schemas
-from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS
-from linepose.pipeline.result_schemas import LAPLACE_SIGMA_COLUMNS
-from linepose.survey.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS, POINT_COVARIANCE_COLUMNS, RESIDUALS
+from linepose.pipeline.stages import DIAGNOSTICS, LAPLACE_SIGMA_COLUMNS, OPTIMA, POSE, SAMPLES
+from linepose.survey.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, OBSERVATIONS, POSITION_COLUMNS
 from linepose.tables import write_table
 
 OPTIMUM = np.array([0.19, -0.14, -0.79, -0.82, 0.74, -1.43])
@@ -339,14 +339,14 @@ def clock_offset() -> pd.DataFrame:
 TABLES = {
     "prior": (prior, schemas.PRIOR),
     "clock_offset": (clock_offset, schemas.CLOCK_OFFSET),
-    "observations": (observations, result_schemas.OBSERVATIONS),
-    "outliers": (outliers, result_schemas.OUTLIERS),
-    "optima": (optima, result_schemas.OPTIMA),
-    "pose": (pose, result_schemas.POSE),
-    "mcmc/inliers": (samples, result_schemas.SAMPLES),
-    "diagnostics": (diagnostics, result_schemas.DIAGNOSTICS),
-    "residuals": (residuals, result_schemas.RESIDUALS),
-    "estimated_points": (estimated_points, result_schemas.ESTIMATED_POINTS),
+    "observations": (observations, OBSERVATIONS),
+    "outliers": (outliers, OUTLIERS),
+    "optima": (optima, OPTIMA),
+    "pose": (pose, POSE),
+    "mcmc/inliers": (samples, SAMPLES),
+    "diagnostics": (diagnostics, DIAGNOSTICS),
+    "residuals": (residuals, RESIDUALS),
+    "estimated_points": (estimated_points, ESTIMATED_POINTS),
     "mapping": (mapping, schemas.MAPPING),
     "mapping_summary": (mapping_summary, schemas.MAPPING_SUMMARY),
     "basin": (basin, schemas.BASIN),

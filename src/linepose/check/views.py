@@ -21,7 +21,7 @@ _WHAT: Final = "time (us), point, u (px), north, east, down (m), roll, pitch, ya
 def view_findings(
     source: LabelledViewsSection, folder: Path, n_pixels: int
 ) -> tuple[list[Finding], pd.DataFrame | None]:
-    """Findings on a platform's view files, and its points (`result_schemas.POINTS`) where they can be used."""
+    """Findings on a platform's view files, and its points (`POINTS`) where they can be used."""
     paths = select_views(folder, source.views, source.first, source.step)
     if not paths:
         total = len(list(folder.glob(source.views)))

@@ -11,10 +11,9 @@ def show(name: Name, project: ProjectFolder = HERE) -> None:
 
     from linepose.cli.result import plain_lines, tables
     from linepose.errors import InputError
-    from linepose.estimation.outliers import removal_order
+    from linepose.estimation.outliers import OUTLIERS, removal_order
     from linepose.output.figures.results import PlatformResults
     from linepose.pipeline.project_folder import find_project, load_platform_project
-    from linepose.pipeline.result_schemas import OUTLIERS
     from linepose.pipeline.summary import summarise
 
     root = find_project(project)

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, PositiveFloat
 
@@ -14,6 +16,17 @@ from linepose.estimation.optimise import Optimum, Search, optimise
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.likelihood.base import Likelihood
 from linepose.settings import Settings
+from linepose.tables import flags, floats, whole_numbers
+
+OUTLIERS: Final = pa.schema(
+    [
+        *whole_numbers("n_observations", "observation"),
+        *floats("error_px"),
+        *flags("removed", "accepted"),
+        *floats("neg_log_likelihood", *POSE_COLUMNS),
+        *whole_numbers("n_evaluations"),
+    ]
+)
 
 
 class OutlierSettings(Settings):
@@ -84,7 +97,7 @@ def accepted_stage(stages: list[RejectionStage], threshold_px: float) -> int:
 def outlier_table(stages: list[RejectionStage], threshold_px: float) -> pd.DataFrame:
     """One row an observation of a stage: its mean error, whether it is the one removed, whether the stage is accepted.
 
-    Columns as in `result_schemas.OUTLIERS`; the last stage removes none.
+    Columns as in `OUTLIERS`; the last stage removes none.
     """
     accepted = accepted_stage(stages, threshold_px)
     rows = []

@@ -5,14 +5,25 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
+from linepose.tables import floats, texts, whole_numbers
 
 POSITION, ROTATION, POSE = "position_m", "rotation_rad", "pose"
 _PARTS: Final = {POSITION: slice(0, 3), ROTATION: slice(3, 6), POSE: slice(0, 6)}
+
+TRUTH_ERROR: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("n_observations"),
+        *texts("quantity"),
+        *floats("error", "sigma", "error_in_sigmas"),
+    ]
+)
 
 
 def truth_error_table(optima: pd.DataFrame, samples: Mapping[str, Floats], true_pose: ArrayLike) -> pd.DataFrame:

@@ -10,6 +10,7 @@ from functools import cache
 from typing import Final
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import ArrayLike
 from pyproj import CRS, Proj, Transformer
 from pyproj.exceptions import CRSError, ProjError
@@ -18,8 +19,11 @@ from linepose.arrays import Floats, exact_decimal
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.inputs.axes import NED_FROM_ENU
+from linepose.tables import optional_floats, texts
 
 GEODETIC: Final = "EPSG:4979"  # WGS 84: latitude, longitude (deg), ellipsoidal height (m)
+
+MAP_FRAME: Final = pa.schema([*texts("crs"), *optional_floats("latitude_deg", "longitude_deg", "height_m")])
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
@@ -15,7 +16,9 @@ from linepose.inputs.labels.labels import check_within
 from linepose.inputs.scans.scan_files import LineTimes, Scan, read_scan
 from linepose.inputs.targets.detect import Detection, detect
 from linepose.inputs.targets.refine import Refine, refine_points
+from linepose.tables import floats, whole_numbers
 
+SCAN_POINTS: Final = pa.schema([*whole_numbers("observation", "point", "time_us"), *floats("u_px", "line")])
 _FEWEST_OBSERVATIONS: Final = 2
 
 log = logging.getLogger(__name__)
@@ -40,7 +43,7 @@ def refined_points(
     n_pixels: int,
     line_times: LineTimes | None = None,
 ) -> pd.DataFrame:
-    """Points of every labelled scan, refined from the labels; columns as in `result_schemas.SCAN_POINTS`.
+    """Points of every labelled scan, refined from the labels; columns as in `SCAN_POINTS`.
 
     Raises InputError naming a label outside its image, or one with no dot near it.
     """
@@ -68,7 +71,7 @@ def refined_points(
 def detected_points(
     scans: Mapping[int, Path], refine: Refine, n_pixels: int, line_times: LineTimes | None = None
 ) -> pd.DataFrame:
-    """Points of every scan in which the board and its ids are found; columns as in `result_schemas.SCAN_POINTS`.
+    """Points of every scan in which the board and its ids are found; columns as in `SCAN_POINTS`.
 
     A scan whose ids are in doubt is left out with a warning. Raises InputError naming a scan without a board.
     """
@@ -102,7 +105,7 @@ def _read(path: Path, n_pixels: int, line_times: LineTimes | None) -> Scan:
 
 
 def scan_points(number: int, scan: Scan, point: NDArray[np.int64], position: Floats) -> pd.DataFrame:
-    """Points (n,) of one observation at positions (n, 2) of u and line; columns as in `result_schemas.SCAN_POINTS`."""
+    """Points (n,) of one observation at positions (n, 2) of u and line; columns as in `SCAN_POINTS`."""
     return pd.DataFrame(
         {
             "observation": number,

@@ -1,6 +1,19 @@
 """One row of the regression: a published number beside the obtained one."""
 
-from typing import Any
+from typing import Any, Final
+
+import pyarrow as pa
+
+from linepose.tables import flags, floats, texts
+
+REGRESSION: Final = pa.schema(
+    [
+        *texts("quantity"),
+        *floats("published", "obtained", "tolerance"),
+        *flags("passed", "known_deviation"),
+        *texts("note"),
+    ]
+)
 
 
 def row(

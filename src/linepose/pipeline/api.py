@@ -104,7 +104,7 @@ def load_platform_file(platform: str, project: Path | str = ".") -> Platform:
 def load_observations(platform: str, project: Path | str = ".") -> pd.DataFrame:
     """The table of observations of a platform of a project, read from its files; raises InputError.
 
-    Columns as in `result_schemas.OBSERVATIONS`, one row a point seen.
+    Columns as in `OBSERVATIONS`, one row a point seen.
     """
     loaded = _loaded(platform, project)
     return read_observations(loaded.platforms[platform], recorded_folder(loaded, platform, find_project(project)))

@@ -9,30 +9,31 @@ import pandas as pd
 import pyarrow as pa
 
 from linepose.arrays import Floats
-from linepose.estimation.outliers import removal_order, stage_observations
+from linepose.estimation.outliers import OUTLIERS, removal_order, stage_observations
 from linepose.geometry.pose import (
     N_PARAMETERS,
     euler_covariance,
     euler_pose,
 )
 from linepose.geometry.rotations import matrix_from_rotation_vector
-from linepose.pipeline import result_schemas
 from linepose.pipeline.pose_tables import PoseWithCovariance, quaternion, rotation_vector_numbers
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS
+from linepose.pipeline.stages import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
 from linepose.pipeline.summary import gather_evidence
 from linepose.pipeline.verdict import Verdict, judge
 from linepose.survey.hand_measured import HandMeasured
-from linepose.survey.observations import Survey, survey_from_table
-from linepose.tables import write_table
+from linepose.survey.observations import OBSERVATIONS, Survey, survey_from_table
+from linepose.tables import with_parameters, write_table
 
 _TABLES: Final = {
-    "observations": result_schemas.OBSERVATIONS,
-    "outliers": result_schemas.OUTLIERS,
-    "optima": result_schemas.OPTIMA,
-    "mcmc/inliers": result_schemas.SAMPLES,
-    "diagnostics": result_schemas.DIAGNOSTICS,
-    "pose": result_schemas.POSE,
-    "residuals": result_schemas.RESIDUALS,
-    "estimated_points": result_schemas.ESTIMATED_POINTS,
+    "observations": OBSERVATIONS,
+    "outliers": OUTLIERS,
+    "optima": OPTIMA,
+    "mcmc/inliers": SAMPLES,
+    "diagnostics": DIAGNOSTICS,
+    "pose": POSE,
+    "residuals": RESIDUALS,
+    "estimated_points": ESTIMATED_POINTS,
 }
 
 
@@ -150,7 +151,7 @@ class Calibration:
         for name, table in self.tables().items():
             schema = _TABLES[name]
             own = tuple(column for column in table.columns if column not in schema.names)
-            write_table(table, Path(folder) / f"{name}.parquet", result_schemas.with_parameters(schema, own))
+            write_table(table, Path(folder) / f"{name}.parquet", with_parameters(schema, own))
 
 
 @dataclass(frozen=True)

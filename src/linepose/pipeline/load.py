@@ -22,7 +22,7 @@ from linepose.survey.observations import check_determined, survey_from_table
 def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
     """Points of all observations in a data set's folder.
 
-    Columns as in `result_schemas.POINTS` (labelled views) or `SCAN_POINTS` (scans). Raises InputError.
+    Columns as in `POINTS` (labelled views) or `SCAN_POINTS` (scans). Raises InputError.
     """
     source, n_pixels = platform.source, platform.camera.n_pixels
     if isinstance(source, LabelledViewsSection):
@@ -36,7 +36,7 @@ def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
 
 
 def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> pd.DataFrame:
-    """The points with body pose and covariance; columns as in `result_schemas.OBSERVATIONS`.
+    """The points with body pose and covariance; columns as in `OBSERVATIONS`.
 
     Raises InputError, also where the views are too few for the pose.
     """
@@ -62,7 +62,7 @@ def map_frame_table(platform: Platform, folder: Path) -> pd.DataFrame:
     """Where the log says that north, east, down are; no row where it does not.
 
     A projected system, or EPSG:4979 and the origin of local coordinates: latitude, longitude (deg), height (m).
-    Columns as in `result_schemas.MAP_FRAME`.
+    Columns as in `MAP_FRAME`.
     """
     record = read_navigation(platform.source, folder) if isinstance(platform.source, ScansSection) else None
     columns = ["crs", "latitude_deg", "longitude_deg", "height_m"]
@@ -82,7 +82,7 @@ def read_reported(platform: Platform, folder: Path) -> NavigationCovariances:
 def read_observations(platform: Platform, folder: Path) -> pd.DataFrame:
     """The table of observations of a platform whose files stand in this folder.
 
-    Columns as in `result_schemas.OBSERVATIONS`. Raises InputError for the first thing that cannot be used.
+    Columns as in `OBSERVATIONS`. Raises InputError for the first thing that cannot be used.
     """
     return with_navigation(read_points(platform, folder), platform, folder)
 

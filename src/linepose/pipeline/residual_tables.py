@@ -1,17 +1,31 @@
 """The residuals and the estimated points behind a pose, as tables: what is left over, and where."""
 
 from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from linepose.likelihood.base import Likelihood
 from linepose.survey.observations import POSITION_COLUMNS
+from linepose.tables import floats, texts, whole_numbers
 
 _UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))
 _AXES = ("north", "east", "down")
 POINT_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j in _UPPER)
+
+RESIDUALS: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("observation", "point"),
+        *floats("error_px", "error_u_px", "error_v_px", "sigma_px"),
+    ]
+)
+ESTIMATED_POINTS: Final = pa.schema(
+    [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS, *POINT_COVARIANCE_COLUMNS)]
+)
 
 
 def residual_tables(
@@ -19,7 +33,7 @@ def residual_tables(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Residuals of every observed point, and the estimated points, at each stage's parameters (P,).
 
-    Columns as in `result_schemas.RESIDUALS` and `ESTIMATED_POINTS`; points in map coordinates. u is along the scan
+    Columns as in `RESIDUALS` and `ESTIMATED_POINTS`; points in map coordinates. u is along the scan
     line, v across it, both observed minus reprojected; sigma is in the direction of the error.
     """
     residuals, points = [], []

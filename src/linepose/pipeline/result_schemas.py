@@ -1,117 +1,26 @@
-"""The columns of every result, with units in their names: what other code may rely on."""
+"""The columns of results; they stand beside the functions that make them."""
 
-from collections.abc import Sequence
-from typing import Final
-
-import pyarrow as pa
-
-from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS
-from linepose.survey import navigation
-from linepose.survey.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, POSITION_COLUMNS
-from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
-
-LAPLACE_SIGMA_COLUMNS: Final = tuple(f"laplace_{name}" for name in SIGMA_COLUMNS)
-
-
-def laplace_sigma_columns(names: Sequence[str]) -> tuple[str, ...]:
-    """Columns of the curvature's sigmas of these parameters."""
-    return tuple(f"laplace_sigma_{name}" for name in names)
-
-
-_POINT = [*whole_numbers("observation", "point", "time_us"), *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS)]
-
-POINTS: Final = pa.schema(_POINT)
-SCAN_POINTS: Final = pa.schema([*whole_numbers("observation", "point", "time_us"), *floats("u_px", "line")])
-_SCAN: Final = [*whole_numbers("observation", "n_lines"), *floats("range_m", "v_px_per_line")]
-EXTRACTION_ACCURACY: Final = pa.schema(
-    [
-        *_SCAN,
-        *texts("method"),
-        *flags("chosen"),
-        *whole_numbers("n_points", "n_missing"),
-        *floats("bias_u_px", "sigma_u_px", "bias_v_px", "sigma_v_px"),
-    ]
-)
-DETECTION: Final = pa.schema([*_SCAN, *whole_numbers("n_visible", "n_found", "n_wrong"), *texts("doubt")])
-OBSERVATIONS: Final = pa.schema([*_POINT, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
-OUTLIERS: Final = pa.schema(
-    [
-        *whole_numbers("n_observations", "observation"),
-        *floats("error_px"),
-        *flags("removed", "accepted"),
-        *floats("neg_log_likelihood", *POSE_COLUMNS),
-        *whole_numbers("n_evaluations"),
-    ]
-)
-OPTIMA: Final = pa.schema(
-    [
-        *texts("stage"),
-        *whole_numbers("n_observations"),
-        *floats(*POSE_COLUMNS, *LAPLACE_SIGMA_COLUMNS, "neg_log_likelihood", "start_neg_log_likelihood"),
-        *floats("reduced_chi_square"),
-        *whole_numbers("n_evaluations", "degrees_of_freedom"),
-        *flags("converged"),
-    ]
-)
-SAMPLES: Final = pa.schema([*whole_numbers("walker", "step"), *floats(*POSE_COLUMNS, "log_likelihood")])
-DIAGNOSTICS: Final = pa.schema(
-    [
-        *texts("stage"),
-        *whole_numbers("n_observations"),
-        *texts("parameter"),
-        *floats(
-            "acceptance_fraction",
-            "autocorrelation_time",
-            "effective_sample_size",
-            "split_r_hat",
-            "sampled_sigma",
-            "laplace_sigma",
-            "neg_log_likelihood",
-            "reduced_chi_square",
-        ),
-        *texts("warning"),
-    ]
-)
-POSE: Final = pa.schema(
-    [
-        *texts("stage"),
-        *whole_numbers("n_observations"),
-        *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
-        *whole_numbers("n_evaluations"),
-    ]
-)
-RESIDUALS: Final = pa.schema(
-    [
-        *texts("stage"),
-        *whole_numbers("observation", "point"),
-        *floats("error_px", "error_u_px", "error_v_px", "sigma_px"),
-    ]
-)
-ESTIMATED_POINTS: Final = pa.schema(
-    [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS, *POINT_COVARIANCE_COLUMNS)]
-)
-FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
-MAP_FRAME: Final = pa.schema([*texts("crs"), *optional_floats("latitude_deg", "longitude_deg", "height_m")])
-NAVIGATION_SIGMA: Final = pa.schema(floats(*navigation.SIGMA_COLUMNS))
-TRUTH_ERROR: Final = pa.schema(
-    [
-        *texts("stage"),
-        *whole_numbers("n_observations"),
-        *texts("quantity"),
-        *floats("error", "sigma", "error_in_sigmas"),
-    ]
-)
-REGRESSION: Final = pa.schema(
-    [
-        *texts("quantity"),
-        *floats("published", "obtained", "tolerance"),
-        *flags("passed", "known_deviation"),
-        *texts("note"),
-    ]
-)
-
-
-def with_parameters(schema: pa.Schema, names: Sequence[str]) -> pa.Schema:
-    """The schema with the columns of a noise model's own parameters at its end."""
-    return pa.schema([*schema, *floats(*names)])
+from linepose.estimation.outliers import OUTLIERS as OUTLIERS
+from linepose.experiments.truth_error import TRUTH_ERROR as TRUTH_ERROR
+from linepose.inputs.labels.labelled_views import POINTS as POINTS
+from linepose.inputs.local_frame import MAP_FRAME as MAP_FRAME
+from linepose.inputs.observed_points import SCAN_POINTS as SCAN_POINTS
+from linepose.inputs.targets.measured import DETECTION as DETECTION
+from linepose.inputs.targets.measured import EXTRACTION_ACCURACY as EXTRACTION_ACCURACY
+from linepose.paper.row import REGRESSION as REGRESSION
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS as ESTIMATED_POINTS
+from linepose.pipeline.residual_tables import RESIDUALS as RESIDUALS
+from linepose.pipeline.stages import DIAGNOSTICS as DIAGNOSTICS
+from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS as LAPLACE_SIGMA_COLUMNS
+from linepose.pipeline.stages import OPTIMA as OPTIMA
+from linepose.pipeline.stages import POSE as POSE
+from linepose.pipeline.stages import SAMPLES as SAMPLES
+from linepose.pipeline.stages import laplace_sigma_columns as laplace_sigma_columns
+from linepose.survey.navigation import NAVIGATION_SIGMA as NAVIGATION_SIGMA
+from linepose.survey.observations import OBSERVATIONS as OBSERVATIONS
+from linepose.tables import flags as flags
+from linepose.tables import floats as floats
+from linepose.tables import optional_floats as optional_floats
+from linepose.tables import texts as texts
+from linepose.tables import whole_numbers as whole_numbers
+from linepose.tables import with_parameters as with_parameters

@@ -1,9 +1,11 @@
 """The estimate at each stage of the outlier removal: optimum, samples, diagnostics, and the table of poses."""
 
 from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
@@ -13,7 +15,51 @@ from linepose.estimation.optimise import Search, laplace_covariance, optimise
 from linepose.estimation.sampling import Chain
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
-from linepose.pipeline.result_schemas import laplace_sigma_columns
+from linepose.tables import flags, floats, texts, whole_numbers
+
+LAPLACE_SIGMA_COLUMNS: Final = tuple(f"laplace_{name}" for name in SIGMA_COLUMNS)
+OPTIMA: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("n_observations"),
+        *floats(*POSE_COLUMNS, *LAPLACE_SIGMA_COLUMNS, "neg_log_likelihood", "start_neg_log_likelihood"),
+        *floats("reduced_chi_square"),
+        *whole_numbers("n_evaluations", "degrees_of_freedom"),
+        *flags("converged"),
+    ]
+)
+SAMPLES: Final = pa.schema([*whole_numbers("walker", "step"), *floats(*POSE_COLUMNS, "log_likelihood")])
+DIAGNOSTICS: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("n_observations"),
+        *texts("parameter"),
+        *floats(
+            "acceptance_fraction",
+            "autocorrelation_time",
+            "effective_sample_size",
+            "split_r_hat",
+            "sampled_sigma",
+            "laplace_sigma",
+            "neg_log_likelihood",
+            "reduced_chi_square",
+        ),
+        *texts("warning"),
+    ]
+)
+POSE: Final = pa.schema(
+    [
+        *texts("stage"),
+        *whole_numbers("n_observations"),
+        *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
+        *whole_numbers("n_evaluations"),
+    ]
+)
+
+
+def laplace_sigma_columns(names: Sequence[str]) -> tuple[str, ...]:
+    """Columns of the curvature's sigmas of these parameters."""
+    return tuple(f"laplace_sigma_{name}" for name in names)
 
 
 def optimise_stages(
@@ -21,7 +67,7 @@ def optimise_stages(
 ) -> pd.DataFrame:
     """The optimum of each stage from the start pose (6,), with the sigmas of the Laplace approximation.
 
-    Columns as in `result_schemas.OPTIMA`, and the noise model's own parameters and their sigmas. The reduced
+    Columns as in `OPTIMA`, and the noise model's own parameters and their sigmas. The reduced
     chi-square is the noise model's chi-square over its degrees of freedom: near one where the sigmas are right.
     """
     rows = []
@@ -73,7 +119,7 @@ def estimated_parameters(optima: pd.DataFrame) -> list[str]:
 def diagnostics_table(optima: pd.DataFrame, diagnostics: Mapping[str, ChainDiagnostics]) -> pd.DataFrame:
     """One row a parameter and stage: is the chain long enough, and do sampled and Laplace sigma agree.
 
-    Columns as in `result_schemas.DIAGNOSTICS`.
+    Columns as in `DIAGNOSTICS`.
     """
     rows = []
     for _, optimum in optima.iterrows():
@@ -107,7 +153,7 @@ def pose_table(
     """The poses that people ask for: the hand-measured one, then each stage's optimum with its sampled sigma.
 
     `start` and `start_sigma` (6,) are the hand measurement; its -log L is that of the inliers.
-    Columns as in `result_schemas.POSE`.
+    Columns as in `POSE`.
     """
     inliers = optima.loc[optima["stage"] == "inliers"].iloc[0]
     hand = {

@@ -8,12 +8,12 @@ import pandas as pd
 import pyarrow as pa
 
 from linepose.arrays import Floats
+from linepose.estimation.outliers import OUTLIERS
 from linepose.experiments import schemas
 from linepose.experiments.split_summary import sigma_factor
 from linepose.experiments.subsets import body_angles_rad
 from linepose.output.figures.checks import accepted_rows, stage_rows, usable_chain
 from linepose.output.figures.results import PlatformResults
-from linepose.pipeline import result_schemas
 from linepose.pipeline.pose_tables import (
     PoseNumber,
     PoseWithCovariance,
@@ -21,7 +21,8 @@ from linepose.pipeline.pose_tables import (
     quaternion,
     rotation_vector_numbers,
 )
-from linepose.pipeline.residual_tables import intraclass_correlation
+from linepose.pipeline.residual_tables import RESIDUALS, intraclass_correlation
+from linepose.pipeline.stages import DIAGNOSTICS, OPTIMA
 from linepose.pipeline.verdict import Evidence, Verdict, judge
 from linepose.survey.observations import Survey
 
@@ -86,7 +87,7 @@ def summarise(results: PlatformResults) -> PlatformSummary:
     hand = PoseWithCovariance(results.platform.start_pose(), results.platform.start_covariance())
     numbers = rotation_vector_numbers(estimate, hand, results.true_pose)
     evidence = gather_evidence(results, numbers)
-    optimum = _accepted_stage(results, "optima", result_schemas.OPTIMA).iloc[0]
+    optimum = _accepted_stage(results, "optima", OPTIMA).iloc[0]
     return PlatformSummary(
         name=results.name,
         description=results.platform.description or results.name,
@@ -104,10 +105,10 @@ def summarise(results: PlatformResults) -> PlatformSummary:
 
 def gather_evidence(results: Results, numbers: list[PoseNumber]) -> Evidence:
     """The numbers that the verdict rests on; `numbers` are the pose's six."""
-    optimum = _accepted_stage(results, "optima", result_schemas.OPTIMA).iloc[0]
-    chain = _accepted_stage(results, "diagnostics", result_schemas.DIAGNOSTICS)
-    residuals = _accepted_stage(results, "residuals", result_schemas.RESIDUALS)
-    outliers = results.table("outliers", result_schemas.OUTLIERS)
+    optimum = _accepted_stage(results, "optima", OPTIMA).iloc[0]
+    chain = _accepted_stage(results, "diagnostics", DIAGNOSTICS)
+    residuals = _accepted_stage(results, "residuals", RESIDUALS)
+    outliers = results.table("outliers", OUTLIERS)
     accepted = accepted_rows(outliers)
     worst = accepted.loc[accepted["error_px"].idxmax()]
     farthest = max(numbers, key=lambda number: abs(number.difference_sigmas))

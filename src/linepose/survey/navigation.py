@@ -7,12 +7,14 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.number_files import check_microseconds, read_numbers
 from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES
+from linepose.tables import floats
 
 SIGMA_COLUMNS: Final = (
     "sigma_north_m",
@@ -22,6 +24,7 @@ SIGMA_COLUMNS: Final = (
     "sigma_pitch_rad",
     "sigma_yaw_rad",
 )
+NAVIGATION_SIGMA: Final = pa.schema(floats(*SIGMA_COLUMNS))
 _SIZE: Final = 12
 _ASYMMETRY: Final = 1e-9  # as a correlation: both halves are printed alike
 _NEGATIVE: Final = 1e-5  # as an eigenvalue of the correlations: what rounding to six printed digits may leave
@@ -117,5 +120,5 @@ def associate_covariances(
 
 
 def median_sigma_table(navigation: NavigationCovariances) -> pd.DataFrame:
-    """The median sigmas as a table of one row; columns as in `result_schemas.NAVIGATION_SIGMA`."""
+    """The median sigmas as a table of one row; columns as in `NAVIGATION_SIGMA`."""
     return pd.DataFrame([navigation.median_sigma()], columns=list(SIGMA_COLUMNS))

@@ -11,16 +11,23 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.tables import floats, whole_numbers
 
 POSITION_COLUMNS: Final = ("north_m", "east_m", "down_m")
 EULER_COLUMNS: Final = ("roll_rad", "pitch_rad", "yaw_rad")
 _AXES: Final = ("north", "east", "down", "roll", "pitch", "yaw")
 COVARIANCE_INDICES: Final = tuple((i, j) for i in range(6) for j in range(i, 6))
 COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}" for i, j in COVARIANCE_INDICES)
+POINT_FIELDS: Final = [
+    *whole_numbers("observation", "point", "time_us"),
+    *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS),
+]
+OBSERVATIONS: Final = pa.schema([*POINT_FIELDS, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
 _RAYS_PER_POINT: Final = 2
 
 

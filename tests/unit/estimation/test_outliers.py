@@ -4,6 +4,7 @@ import pytest
 
 from linepose.errors import EstimationError
 from linepose.estimation.outliers import (
+    OUTLIERS,
     accepted_stage,
     outlier_table,
     reject_outliers,
@@ -11,7 +12,6 @@ from linepose.estimation.outliers import (
     stage_observations,
 )
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.pipeline.result_schemas import OUTLIERS
 
 
 @pytest.fixture

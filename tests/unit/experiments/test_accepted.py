@@ -8,7 +8,7 @@ from linepose.config.experiments import RuleSection, SubsetSection
 from linepose.errors import InputError
 from linepose.experiments.accepted import Accepted, read_reference
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.pipeline.result_schemas import LAPLACE_SIGMA_COLUMNS, OPTIMA, SAMPLES
+from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS, OPTIMA, SAMPLES
 from linepose.tables import write_table
 
 

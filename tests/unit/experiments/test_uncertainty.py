@@ -3,7 +3,7 @@ import pandas as pd
 
 from linepose.experiments.uncertainty import uncertainty_by_stage
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.pipeline.result_schemas import LAPLACE_SIGMA_COLUMNS
+from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS
 
 
 def test_each_stage_has_both_sigmas_beside_its_pose():

@@ -7,9 +7,8 @@ from PIL import Image
 
 from linepose.errors import InputError
 from linepose.inputs.labels.labels import read_labels
-from linepose.inputs.observed_points import detected_points, refined_points, select_scans
+from linepose.inputs.observed_points import SCAN_POINTS, detected_points, refined_points, select_scans
 from linepose.inputs.targets.refine import METHODS
-from linepose.pipeline.result_schemas import SCAN_POINTS
 
 START_US = 1_466_000_000_000_000
 STEP_US = 7519

@@ -13,8 +13,8 @@ import linepose
 from linepose.config.new_platform import NewPlatform, write_platform
 from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
-from linepose.pipeline.result_schemas import OBSERVATIONS, OPTIMA
-from linepose.survey.observations import COVARIANCE_COLUMNS, survey_from_table, table_from_survey
+from linepose.pipeline.stages import OPTIMA
+from linepose.survey.observations import COVARIANCE_COLUMNS, OBSERVATIONS, survey_from_table, table_from_survey
 from linepose.tables import read_table
 from unit.conftest import ROOT
 from unit.recorded_files import simulated_survey, write_platform_files

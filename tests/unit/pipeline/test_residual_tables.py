@@ -3,8 +3,13 @@ import pandas as pd
 import pytest
 
 from linepose.likelihood.base import Residuals
-from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS, intraclass_correlation, residual_tables
-from linepose.pipeline.result_schemas import ESTIMATED_POINTS, RESIDUALS
+from linepose.pipeline.residual_tables import (
+    ESTIMATED_POINTS,
+    POINT_COVARIANCE_COLUMNS,
+    RESIDUALS,
+    intraclass_correlation,
+    residual_tables,
+)
 from linepose.survey.observations import POSITION_COLUMNS, survey_from_table
 from linepose.tables import write_table
 from unit import made_up

@@ -7,8 +7,18 @@ from linepose.estimation.diagnostics import diagnose_samples
 from linepose.estimation.optimise import Search, laplace_covariance, optimise
 from linepose.estimation.sampling import Chain
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.pipeline.result_schemas import DIAGNOSTICS, LAPLACE_SIGMA_COLUMNS, OPTIMA, POSE, SAMPLES
-from linepose.pipeline.stages import diagnostics_table, optimise_stages, pose_table, sample_table, samples_from_table
+from linepose.pipeline.stages import (
+    DIAGNOSTICS,
+    LAPLACE_SIGMA_COLUMNS,
+    OPTIMA,
+    POSE,
+    SAMPLES,
+    diagnostics_table,
+    optimise_stages,
+    pose_table,
+    sample_table,
+    samples_from_table,
+)
 
 STAGES = {"all": list(range(1, 9)), "observations_7": [1, 2, 3, 4, 5, 7, 8], "inliers": [1, 2, 4, 5, 7]}
 

@@ -3,8 +3,8 @@ import pandas as pd
 import pytest
 
 from linepose.errors import InputError
-from linepose.pipeline.result_schemas import NAVIGATION_SIGMA
 from linepose.survey.navigation import (
+    NAVIGATION_SIGMA,
     NavigationCovariances,
     associate_covariances,
     median_sigma_table,

@@ -7,11 +7,13 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 
 from linepose.errors import InputError
 from linepose.inputs.number_files import check_microseconds, read_numbers
-from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
+from linepose.survey.observations import EULER_COLUMNS, POINT_FIELDS, POSITION_COLUMNS
 
+POINTS: Final = pa.schema(POINT_FIELDS)
 _COLUMNS: Final = ("time_us", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS)
 _WHAT: Final = "time (us), point, u (px), north, east, down (m), roll, pitch, yaw (rad)"
 

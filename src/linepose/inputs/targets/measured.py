@@ -3,9 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
@@ -13,7 +15,19 @@ from linepose.inputs.observed_points import detected_in, scan_points
 from linepose.inputs.targets.accuracy import compare_methods
 from linepose.inputs.targets.detect import Detection
 from linepose.inputs.targets.refine import METHODS
+from linepose.tables import flags, floats, texts, whole_numbers
 
+_SCAN: Final = [*whole_numbers("observation", "n_lines"), *floats("range_m", "v_px_per_line")]
+EXTRACTION_ACCURACY: Final = pa.schema(
+    [
+        *_SCAN,
+        *texts("method"),
+        *flags("chosen"),
+        *whole_numbers("n_points", "n_missing"),
+        *floats("bias_u_px", "sigma_u_px", "bias_v_px", "sigma_v_px"),
+    ]
+)
+DETECTION: Final = pa.schema([*_SCAN, *whole_numbers("n_visible", "n_found", "n_wrong"), *texts("doubt")])
 _PLACE = ["u_px", "line"]
 
 
@@ -21,7 +35,7 @@ _PLACE = ["u_px", "line"]
 class MeasuredExtraction:
     """Tables: `accuracy` of each method and `detection`, a row an observation, and the detected `points`.
 
-    Columns as in `result_schemas.EXTRACTION_ACCURACY`, `DETECTION` and `SCAN_POINTS`.
+    Columns as in `EXTRACTION_ACCURACY`, `DETECTION` and `SCAN_POINTS`.
     """
 
     accuracy: pd.DataFrame

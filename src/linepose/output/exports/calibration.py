@@ -17,7 +17,7 @@ from linepose.geometry.rotations import (
     rotation_vector_from_matrix,
 )
 from linepose.output.exports.options import BodyAxes
-from linepose.pipeline.result_schemas import POSE, SAMPLES
+from linepose.pipeline.stages import POSE, SAMPLES
 from linepose.tables import read_table
 
 HAND_MEASURED: Final = "hand_measured"

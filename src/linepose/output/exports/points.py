@@ -10,11 +10,10 @@ from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.experiments.schemas import MAPPING
-from linepose.inputs.local_frame import GEODETIC
+from linepose.inputs.local_frame import GEODETIC, MAP_FRAME
 from linepose.output.exports.calibration import finished
 from linepose.output.exports.map_frame import MapFrame, projected_map, tangent_map
-from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS
-from linepose.pipeline.result_schemas import ESTIMATED_POINTS, MAP_FRAME
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS, POINT_COVARIANCE_COLUMNS
 from linepose.survey.observations import POSITION_COLUMNS
 from linepose.tables import read_table
 

@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from linepose.config.platform import Platform
+from linepose.estimation.outliers import OUTLIERS
 from linepose.experiments import schemas
 from linepose.output.figures import (
     basin,
@@ -26,20 +27,22 @@ from linepose.output.figures.entry import CatalogueEntry, without
 from linepose.output.figures.noise_catalogue import NOISE_FIGURES
 from linepose.output.figures.results import PlatformResults
 from linepose.output.figures.scan_example import scan_examples
-from linepose.pipeline import result_schemas
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS
+from linepose.pipeline.stages import DIAGNOSTICS
+from linepose.survey.observations import OBSERVATIONS
 
 
 def _mapping(r: PlatformResults) -> Figure:
-    points = r.table("estimated_points", result_schemas.ESTIMATED_POINTS)
+    points = r.table("estimated_points", ESTIMATED_POINTS)
     mapped = r.table("mapping", schemas.MAPPING)
-    observations = r.table("observations", result_schemas.OBSERVATIONS)
+    observations = r.table("observations", OBSERVATIONS)
     return mapping.mapping(mapped, points, observations, r.accepted()[0], r.true_points_m)
 
 
 def _angle_error(r: PlatformResults) -> Figure:
-    points = r.table("estimated_points", result_schemas.ESTIMATED_POINTS)
+    points = r.table("estimated_points", ESTIMATED_POINTS)
     mapped = r.table("mapping", schemas.MAPPING)
-    observations = r.table("observations", result_schemas.OBSERVATIONS)
+    observations = r.table("observations", OBSERVATIONS)
     return mapping.angle_error(mapped, points, observations, _angle_deg(r), r.true_points_m)
 
 
@@ -76,15 +79,15 @@ def _trace(r: PlatformResults) -> Figure:
 
 def _diagnostics_caption(r: PlatformResults) -> str:
     n_steps = int(r.samples()["step"].max()) + 1
-    return trace.autocorrelation_caption(r.table("diagnostics", result_schemas.DIAGNOSTICS), n_steps)
+    return trace.autocorrelation_caption(r.table("diagnostics", DIAGNOSTICS), n_steps)
 
 
 def _residuals(by: str) -> Callable[[PlatformResults], Figure]:
-    return lambda r: residuals.residuals(r.table("residuals", result_schemas.RESIDUALS), by)
+    return lambda r: residuals.residuals(r.table("residuals", RESIDUALS), by)
 
 
 def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
-    return lambda r: residuals.residuals_caption(r.table("residuals", result_schemas.RESIDUALS), by)
+    return lambda r: residuals.residuals_caption(r.table("residuals", RESIDUALS), by)
 
 
 def _without_splits(platform: Platform) -> str:
@@ -114,9 +117,7 @@ FIGURES: Final = (
         "Survey from above",
         "Figure 5",
         "map of the observations around the pattern, numbered and coloured by tilt",
-        lambda r: survey_plan.survey_plan(
-            r.survey(), r.accepted(), r.table("estimated_points", result_schemas.ESTIMATED_POINTS)
-        ),
+        lambda r: survey_plan.survey_plan(r.survey(), r.accepted(), r.table("estimated_points", ESTIMATED_POINTS)),
         lambda r: survey_plan.survey_plan_caption(r.survey(), r.accepted()),
     ),
     CatalogueEntry(
@@ -151,8 +152,8 @@ FIGURES: Final = (
         "Outlier removal",
         "Figure 8",
         "matrix of mean errors, observations across, stages of the removal down, the accepted row framed",
-        lambda r: outlier_matrix.outlier_matrix(r.table("outliers", result_schemas.OUTLIERS)),
-        lambda r: outlier_matrix.outlier_matrix_caption(r.table("outliers", result_schemas.OUTLIERS), r.threshold_px),
+        lambda r: outlier_matrix.outlier_matrix(r.table("outliers", OUTLIERS)),
+        lambda r: outlier_matrix.outlier_matrix_caption(r.table("outliers", OUTLIERS), r.threshold_px),
     ),
     CatalogueEntry(
         "uncertainty",
@@ -220,7 +221,7 @@ FIGURES: Final = (
         "",
         "each pose parameter over the steps of the chain",
         _trace,
-        lambda r: trace.trace_caption(r.table("diagnostics", result_schemas.DIAGNOSTICS)),
+        lambda r: trace.trace_caption(r.table("diagnostics", DIAGNOSTICS)),
     ),
     CatalogueEntry(
         "autocorrelation",

@@ -41,7 +41,7 @@ def accepted_rows(outliers: pd.DataFrame) -> pd.DataFrame:
 
 
 def usable_chain(samples: pd.DataFrame) -> Floats:
-    """The poses (S, 6) of a chain, `samples` as in `result_schemas.SAMPLES`; raises InputError for one that stands."""
+    """The poses (S, 6) of a chain, `samples` as in `SAMPLES`; raises InputError for one that stands."""
     chain = usable_rows(samples, POSE_COLUMNS, "samples")[list(POSE_COLUMNS)].to_numpy()
     standing = [name for name, spread in zip(POSE_COLUMNS, np.ptp(chain, axis=0), strict=True) if spread == 0]
     if standing:

@@ -24,7 +24,7 @@ _SHADE = "#777777"
 def corner_plot(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figure:
     """Histograms and contours of the samples, with poses (6,) marked by name: optimum, hand measured, truth.
 
-    `samples` as in `result_schemas.SAMPLES`; contours hold 39, 68 and 95 % of the samples, dashes 16, 50 and 84 %.
+    `samples` as in `SAMPLES`; contours hold 39, 68 and 95 % of the samples, dashes 16, 50 and 84 %.
     """
     chain = usable_chain(samples)
     poses = {name: np.asarray(pose, dtype=float) for name, pose in marked.items()}

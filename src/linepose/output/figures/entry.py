@@ -2,11 +2,16 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
+import pyarrow as pa
 from matplotlib.figure import Figure
 
 from linepose.config.platform import Platform
 from linepose.output.figures.results import PlatformResults
+from linepose.tables import texts
+
+FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ _LEAST_PX = 0.1
 def outlier_matrix(outliers: pd.DataFrame) -> Figure:
     """Cells coloured by mean reprojection error, crossed where removed next, then white; the accepted row framed.
 
-    `outliers` as in `result_schemas.OUTLIERS`.
+    `outliers` as in `OUTLIERS`.
     """
     table = usable_rows(outliers, _COLUMNS, "outliers.parquet")
     errors = table.pivot_table(index="n_observations", columns="observation", values="error_px").sort_index(

@@ -40,7 +40,7 @@ _DENSITY: Final = LinearSegmentedColormap.from_list("density", [(0, 0, 0, 0), (0
 def platform_sketch(samples: pd.DataFrame, outline: OutlineSection, marked: Mapping[str, ArrayLike]) -> Figure:
     """From the side and from the front, whole and close up: the camera's position as a 2D histogram, its optical axes.
 
-    `samples` as in `result_schemas.SAMPLES`; `marked` has poses (6,) by name: optimum, hand measured, truth.
+    `samples` as in `SAMPLES`; `marked` has poses (6,) by name: optimum, hand measured, truth.
     """
     chain = usable_chain(samples)
     poses = {name: np.asarray(pose, dtype=float) for name, pose in marked.items()}

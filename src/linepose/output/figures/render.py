@@ -14,7 +14,7 @@ from linepose.output.figures.style import save
 def render_figures(results: PlatformResults, folder: Path) -> pd.DataFrame:
     """Draw every figure of the catalogue into a folder, PNG and PDF; one row a figure, drawn or left out.
 
-    Columns as in `result_schemas.FIGURES`: where `left_out` has a sentence there is no file.
+    Columns as in `FIGURES`: where `left_out` has a sentence there is no file.
     """
     return pd.DataFrame([_render(entry, results, folder) for entry in FIGURES])
 

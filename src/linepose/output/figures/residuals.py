@@ -19,7 +19,7 @@ _NAMES = {"observation": "Observation", "point": "Point"}
 def residuals(table: pd.DataFrame, by: str) -> Figure:
     """Errors along and across the scan line of the accepted observations, grouped by `observation` or `point`.
 
-    Dots are single points, bars the group's mean, the band one mean sigma. `table` as in `result_schemas.RESIDUALS`.
+    Dots are single points, bars the group's mean, the band one mean sigma. `table` as in `RESIDUALS`.
     """
     rows = _inliers(table)
     groups = np.sort(rows[by].unique())

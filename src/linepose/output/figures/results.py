@@ -10,10 +10,11 @@ import pyarrow as pa
 
 from linepose.arrays import Floats
 from linepose.config.platform import Platform
+from linepose.estimation.outliers import OUTLIERS
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.output.figures.checks import accepted_rows, stage_rows, usable_rows
-from linepose.pipeline.result_schemas import OBSERVATIONS, OUTLIERS, POSE, SAMPLES
-from linepose.survey.observations import POSITION_COLUMNS, Survey, survey_from_table
+from linepose.pipeline.stages import POSE, SAMPLES
+from linepose.survey.observations import OBSERVATIONS, POSITION_COLUMNS, Survey, survey_from_table
 from linepose.tables import read_table
 
 

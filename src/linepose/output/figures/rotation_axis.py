@@ -35,7 +35,7 @@ _Z_DOWN: Final = np.diag([1.0, -1.0, -1.0])  # the body frame as matplotlib, who
 def rotation_axis(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figure:
     """The axes on the sphere and close up around their mean, coloured by density, and the angles' histogram.
 
-    `samples` as in `result_schemas.SAMPLES`; `marked` has poses (6,) by name: optimum, hand measured, truth.
+    `samples` as in `SAMPLES`; `marked` has poses (6,) by name: optimum, hand measured, truth.
     """
     axis, angle_deg = axis_and_angle(usable_chain(samples)[:, 3:])
     marks = {name: axis_and_angle(np.asarray(pose, dtype=float)[3:]) for name, pose in marked.items()}

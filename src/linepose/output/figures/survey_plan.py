@@ -23,7 +23,7 @@ _LABEL_TURNS = 200
 def survey_plan(survey: Survey, accepted: list[int], estimated: pd.DataFrame) -> Figure:
     """Where each observation was made, numbered, coloured by tilt, rejected ones as squares; the points as crosses.
 
-    `estimated` as in `result_schemas.ESTIMATED_POINTS`. A short line says which way the vehicle headed.
+    `estimated` as in `ESTIMATED_POINTS`. A short line says which way the vehicle headed.
     """
     points = usable_rows(estimated, ["stage", *POSITION_COLUMNS], "estimated_points.parquet")
     points_m = points.loc[points["stage"] == "inliers", list(POSITION_COLUMNS)].to_numpy() - survey.origin_m

@@ -44,7 +44,7 @@ _LINES: Final[Any] = {
 def trace(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figure:
     """Each parameter over the kept steps: a few walkers, and the median and 68 % of all of them.
 
-    `samples` as in `result_schemas.SAMPLES`; `marked` has poses (6,) by name: optimum, truth.
+    `samples` as in `SAMPLES`; `marked` has poses (6,) by name: optimum, truth.
     """
     chain = _chain(samples)
     figure = blank_figure(HALF_PAGE_IN, 5.6)
@@ -76,7 +76,7 @@ def trace(samples: pd.DataFrame, marked: Mapping[str, ArrayLike]) -> Figure:
 def autocorrelation(samples: pd.DataFrame) -> Figure:
     """How alike a walker's positions are that lie a number of steps apart, averaged over the walkers.
 
-    `samples` as in `result_schemas.SAMPLES`.
+    `samples` as in `SAMPLES`.
     """
     chain = _chain(samples)
     figure = blank_figure(HALF_PAGE_IN, 2.8)

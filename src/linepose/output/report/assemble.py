@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
+from linepose.output.figures.entry import FIGURES
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.page import PlatformOnPage, figures_on_page
 from linepose.output.report.platform_sections import platform_sections
 from linepose.output.report.provenance import settings_text
-from linepose.pipeline.result_schemas import FIGURES
 from linepose.pipeline.summary import summarise
 from linepose.tables import read_table
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from linepose.errors import InputError
-from linepose.inputs.labels.labelled_views import read_labelled_views, select_views
-from linepose.pipeline.result_schemas import POINTS
+from linepose.inputs.labels.labelled_views import POINTS, read_labelled_views, select_views
 
 START_US = 1_466_040_439_908_160
 N_PIXELS = 648

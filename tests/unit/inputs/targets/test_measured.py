@@ -3,8 +3,8 @@ import pandas as pd
 import pytest
 from PIL import Image
 
-from linepose.inputs.targets.measured import measure_extraction, nearest
-from linepose.pipeline.result_schemas import DETECTION, EXTRACTION_ACCURACY, SCAN_POINTS
+from linepose.inputs.observed_points import SCAN_POINTS
+from linepose.inputs.targets.measured import DETECTION, EXTRACTION_ACCURACY, measure_extraction, nearest
 from linepose.tables import write_table
 
 SHAPE = (200, 150)

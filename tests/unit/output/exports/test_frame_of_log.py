@@ -6,9 +6,9 @@ import pytest
 
 from linepose.config.platform import Platform
 from linepose.errors import InputError
+from linepose.inputs.local_frame import MAP_FRAME
 from linepose.output.exports.points import frame_of
 from linepose.pipeline.load import map_frame_table
-from linepose.pipeline.result_schemas import MAP_FRAME
 from linepose.tables import read_table, write_table
 from unit import made_up
 

@@ -9,11 +9,10 @@ from pyproj import Geod, Transformer
 from linepose.config.platform import Platform
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.inputs import local_frame
-from linepose.inputs.local_frame import geodetic_from_local, local_from_geodetic, tangent_frame
+from linepose.inputs.local_frame import MAP_FRAME, geodetic_from_local, local_from_geodetic, tangent_frame
 from linepose.inputs.navigation import read_navigation
 from linepose.output.exports import export_platform
 from linepose.pipeline.load import map_frame_table
-from linepose.pipeline.result_schemas import MAP_FRAME
 from linepose.survey.observations import POSITION_COLUMNS
 from linepose.tables import write_table
 from unit import made_up

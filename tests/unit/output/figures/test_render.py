@@ -16,11 +16,11 @@ from PIL import Image
 from linepose.errors import LineposeError
 from linepose.output.figures.catalogue import FIGURES
 from linepose.output.figures.checks import usable_chain
+from linepose.output.figures.entry import FIGURES as SCHEMA
 from linepose.output.figures.render import render_figures
 from linepose.output.figures.results import PlatformResults
 from linepose.output.figures.style import HALF_PAGE_IN, LEAST_PT, PNG_DPI, blank_figure, save
 from linepose.output.report.platform_sections import platform_sections
-from linepose.pipeline.result_schemas import FIGURES as SCHEMA
 from linepose.pipeline.summary import summarise
 from linepose.tables import write_table
 from unit import made_up
@@ -152,9 +152,9 @@ _REDRAW = """
 import sys
 from contextlib import suppress
 from pathlib import Path
-from linepose.figures.render import render_figures
-from linepose.figures.checks import usable_chain
-from linepose.figures.results import PlatformResults
+from linepose.output.figures.render import render_figures
+from linepose.output.figures.checks import usable_chain
+from linepose.output.figures.results import PlatformResults
 sys.path.insert(0, sys.argv[1])
 from unit import made_up
 folder = Path(sys.argv[2])

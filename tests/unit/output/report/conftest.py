@@ -1,12 +1,12 @@
 import pytest
 
+from linepose.output.figures.entry import FIGURES
 from linepose.output.figures.render import render_figures
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.assemble import platform_on_page
 from linepose.output.report.page import render_page
 from linepose.output.report.provenance import settings_text, versions
 from linepose.paper.report_sections import published_sections
-from linepose.pipeline.result_schemas import FIGURES
 from linepose.tables import write_table
 from unit import made_up
 from unit.output.report.made_up_page import REGRESSION
