@@ -49,9 +49,30 @@ class Recorded:
 
 
 def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
-    """All findings on a platform of the project in or above a folder.
+    """All that can be known of a platform before a run, in seconds.
 
-    Raises InputError where there is no project; every other fault is a finding.
+    Parameters
+    ----------
+    platform : str
+        Its name, as in config/platforms/NAME.yaml.
+    project : path_like, optional
+        The project's folder, or one below it; by default the current one.
+
+    Returns
+    -------
+    CheckReport
+        The findings, each with its level and advice, and the sigmas (m, rad) that the pose will be known to.
+
+    Raises
+    ------
+    InputError
+        There is no project; every other fault is a finding.
+
+    Examples
+    --------
+    >>> report = linepose.check_platform("myrobot")
+    >>> report.level < 2, len(report.predicted)
+    (True, 6)
     """
     root = find_project(project)
     findings = configuration_findings(platform, root)

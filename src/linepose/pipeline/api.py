@@ -25,12 +25,47 @@ def observations_from_arrays(
     euler_rad: ArrayLike,
     covariance: ArrayLike,
 ) -> pd.DataFrame:
-    """The table of observations of K points seen, from arrays.
+    """The table of observations, from arrays with one row for each of K measurements.
 
-    observation (K,): number of the view from 1; point (K,): number of the pattern point from 0; u_px (K,): pixel along
-    the scan line from 0; position_m (K, 3): the body's north, east, down when the point was recorded; euler_rad
-    (K, 3): its roll, pitch, yaw, zyx intrinsic; covariance (6, 6) or (K, 6, 6): of north, east, down, roll, pitch, yaw
-    (m, rad). Raises InputError naming the first array that does not fit.
+    Parameters
+    ----------
+    observation : array_like, shape (K,)
+        Number of the observation, from 1.
+    point : array_like, shape (K,)
+        Number of the pattern's point, from 0.
+    u_px : array_like, shape (K,)
+        Pixel along the scan line, from 0 (px).
+    position_m : array_like, shape (K, 3)
+        The body's north, east, down when the point was recorded (m).
+    euler_rad : array_like, shape (K, 3)
+        The body's roll, pitch, yaw then, zyx intrinsic (rad).
+    covariance : array_like, shape (6, 6) or (K, 6, 6)
+        Of north, east, down, roll, pitch, yaw (m, rad).
+
+    Returns
+    -------
+    pandas.DataFrame
+        K rows, sorted by observation and point, with units in the column names.
+
+    Raises
+    ------
+    InputError
+        Names the first array that does not fit, its row, and what to do.
+
+    Examples
+    --------
+    >>> table = linepose.observations_from_arrays(
+    ...     observation=[1, 1],
+    ...     point=[0, 1],
+    ...     u_px=[310.2, 325.9],
+    ...     position_m=[[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]],
+    ...     euler_rad=np.zeros((2, 3)),
+    ...     covariance=np.diag([0.02, 0.02, 0.03, 0.001, 0.001, 0.002]) ** 2,
+    ... )
+    >>> table[["observation", "point", "u_px", "north_m"]]
+       observation  point   u_px  north_m
+    0            1      0  310.2      0.0
+    1            1      1  325.9      0.1
     """
     pixels = np.atleast_1d(np.asarray(u_px, dtype=float))
     count = len(pixels)
@@ -97,23 +132,90 @@ def _check_covariances(matrices: Floats) -> None:
 
 
 def load_platform_file(platform: str, project: Path | str = ".") -> Platform:
-    """What config/platforms/PLATFORM.yaml says, of the project in or above a folder; raises InputError."""
+    """What a platform's file says.
+
+    Parameters
+    ----------
+    platform : str
+        Its name, as in config/platforms/NAME.yaml.
+    project : path_like, optional
+        The project's folder, or one below it; by default the current one.
+
+    Returns
+    -------
+    Platform
+        The settings of the file, checked, defaults filled in.
+
+    Raises
+    ------
+    InputError
+        The project or the file is missing, or a key of it is wrong.
+
+    Examples
+    --------
+    >>> linepose.load_platform_file("myrobot").camera.n_pixels
+    648
+    """
     return _loaded(platform, project).platforms[platform]
 
 
 def load_observations(platform: str, project: Path | str = ".") -> pd.DataFrame:
-    """The table of observations of a platform of a project, read from its files; raises InputError.
+    """The table of observations of a platform, read from its files.
 
-    Columns as in `OBSERVATIONS`, one row a point seen.
+    Parameters
+    ----------
+    platform : str
+        Its name, as in config/platforms/NAME.yaml.
+    project : path_like, optional
+        The project's folder, or one below it; by default the current one.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each measurement, as `observations_from_arrays` makes it.
+
+    Raises
+    ------
+    InputError
+        Names the file, the row, what was found and what to do.
+
+    Examples
+    --------
+    >>> linepose.load_observations("myrobot")["observation"].nunique()
+    16
     """
     loaded = _loaded(platform, project)
     return read_observations(loaded.platforms[platform], recorded_folder(loaded, platform, find_project(project)))
 
 
 def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
-    """The calibration of a platform of a project, with the settings of its config.yaml; raises LineposeError.
+    """The calibration of a platform, with the settings of its project's config.yaml.
 
     The pose, its covariance and all tables are those of `linepose run`, for the accepted observations.
+
+    Parameters
+    ----------
+    platform : str
+        Its name, as in config/platforms/NAME.yaml.
+    project : path_like, optional
+        The project's folder, or one below it; by default the current one.
+
+    Returns
+    -------
+    Calibration
+        The pose, its covariance and all that it rests on.
+
+    Raises
+    ------
+    InputError
+        A file of the platform cannot be used.
+    EstimationError
+        No set of observations agrees on a pose.
+
+    Examples
+    --------
+    >>> linepose.calibrate_platform("myrobot").covariance.shape
+    (6, 6)
     """
     loaded = _loaded(platform, project)
     settings, study = loaded.platforms[platform], loaded.study

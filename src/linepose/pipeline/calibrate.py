@@ -77,9 +77,38 @@ def calibrate(
 ) -> Calibration:
     """The camera's pose on the vehicle, with outliers removed and the uncertainty sampled.
 
-    `observations` has one row a point seen: observation, point, u_px, body pose and covariance, as
-    `observations_from_arrays` and `load_observations` make it. Raises InputError where it lacks something, and
-    EstimationError where no set of observations agrees.
+    Parameters
+    ----------
+    observations : pandas.DataFrame
+        One row for each measurement: observation, point, u_px, body pose and covariance, as `observations_from_arrays`
+        and `load_observations` make it.
+    camera : Camera
+        Intrinsic parameters and how well they are known.
+    hand_measured : HandMeasured
+        The pose by tape measure (m, deg), where the search starts.
+    settings : CalibrationSettings, optional
+        How it is done.
+
+    Returns
+    -------
+    Calibration
+        The pose (m, rad), its covariance and all that it rests on.
+
+    Raises
+    ------
+    InputError
+        The observations lack something, or a setting is wrong.
+    EstimationError
+        No set of observations agrees on a pose.
+
+    Examples
+    --------
+    >>> observations = linepose.load_observations("myrobot")
+    >>> camera = linepose.Camera(focal_length_m=8.2e-3, pixel_pitch_m=7.407e-6, n_pixels=648, principal_point_px=323)
+    >>> by_hand = linepose.HandMeasured(position_m=(0.2, 0.0, -0.8), euler_deg=(-56.0, 0.0, -90.0))
+    >>> calibration = linepose.calibrate(observations, camera, by_hand)
+    >>> calibration.pose.shape, calibration.matrix.shape
+    ((6,), (4, 4))
     """
     settings = settings or CalibrationSettings()
     observations = _checked(observations, settings)

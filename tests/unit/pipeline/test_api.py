@@ -1,5 +1,7 @@
 """The Python interface: arrays in, pose and sigmas out; every example of README and docs/api.md runs."""
 
+import doctest
+import inspect
 import re
 import subprocess
 import sys
@@ -24,6 +26,8 @@ QUICK = linepose.CalibrationSettings(
     threshold_px=50.0, sampling=linepose.SamplingSettings(n_walkers=24, n_burn_in=40, n_steps=60)
 )
 N_PASSES = 16
+FUNCTIONS = [name for name in linepose.__all__ if inspect.isfunction(getattr(linepose, name))]
+IN_EXAMPLES = {"linepose": linepose, "np": np}
 BY_HAND = linepose.HandMeasured(position_m=(0.2, 0.0, -0.8), euler_deg=(-56.0, 0.0, -90.0))
 
 
@@ -165,8 +169,8 @@ def test_unknown_noise_model_lists_the_known(simulated, arrays):
 
 
 def test_hand_measurement_without_sigmas_is_refused():
-    with pytest.raises(linepose.InputError, match="positive"):
-        _ = linepose.HandMeasured((0, 0, 0), (0, 0, 0), sigma_position_m=0.0).covariance
+    with pytest.raises(linepose.InputError, match="greater than 0"):
+        linepose.HandMeasured(position_m=(0, 0, 0), euler_deg=(0, 0, 0), sigma_position_m=0.0)
 
 
 def test_times_and_gaps_may_be_left_out(simulated, arrays):
@@ -199,6 +203,25 @@ def test_observations_of_a_platform_are_those_of_its_files(simulated, myrobot):
     assert_allclose(observations["u_px"], expected["u_px"], atol=1e-3)
     assert_allclose(observations["north_m"], expected["north_m"], atol=1e-5)
     assert_allclose(observations["covariance_yaw_yaw"], expected["covariance_yaw_yaw"], rtol=1e-6)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_example_of_a_docstring_runs(name, myrobot):
+    (example,) = doctest.DocTestFinder(recurse=False).find(getattr(linepose, name), name, globs=IN_EXAMPLES)
+    assert example.examples
+    told: list[str] = []
+    doctest.DocTestRunner(verbose=False).run(example, out=told.append)
+    assert told == []
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_docstring_tells_parameters_results_and_errors(name):
+    function = getattr(linepose, name)
+    docstring = inspect.getdoc(function)
+    for heading in ("Parameters", "Returns", "Raises", "Examples"):
+        assert f"\n{heading}\n{'-' * len(heading)}\n" in docstring
+    for parameter in inspect.signature(function).parameters:
+        assert re.search(rf"^{parameter} : ", docstring, re.MULTILINE), parameter
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/api.md"])
