@@ -21,12 +21,11 @@ import small_survey
 
 from linepose.arrays import Floats
 from linepose.estimation.diagnostics import diagnose_samples
-from linepose.estimation.noise_models import likelihood_of
+from linepose.estimation.noise_models import BALANCED, ROBUST, SHARED, likelihood_of
 from linepose.estimation.optimise import optimise
 from linepose.estimation.sampling import IndependenceSettings, sample
 from linepose.geometry.camera import Camera
 from linepose.likelihood.balanced import BalancedLikelihood
-from linepose.likelihood.names import BALANCED, ROBUST, SHARED
 from linepose.likelihood.robust import RobustSharedLikelihood
 from linepose.likelihood.shared import SharedLikelihood
 from linepose.likelihood.shared_kernel import empty_lines, levels_at, linearise, optics_at
@@ -129,11 +128,11 @@ def main() -> None:
     with_robust = parser.parse_args().robust_chain
     survey, camera, pose, sixteen = survey_and_camera()
     print("field data" if field_data.PRESENT else "simulated survey")
-    for name in (SHARED, BALANCED, ROBUST):
+    for name in (SHARED.name, BALANCED.name, ROBUST.name):
         for numbers in (sixteen, tuple(int(number) for number in survey.number)):
             likelihood = likelihood_of(name, survey.select(numbers), camera, pose)
             assert isinstance(likelihood, SharedLikelihood)
-            report(likelihood, pose, name != ROBUST or with_robust)
+            report(likelihood, pose, name != ROBUST.name or with_robust)
 
 
 if __name__ == "__main__":

@@ -9,14 +9,13 @@ with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import sampling_settings
     from linepose.estimation.diagnostics import diagnose_samples
-    from linepose.estimation.sampling import section_of
     from linepose.pipeline.result_schemas import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
     from linepose.pipeline.stages import diagnostics_table, estimated_parameters, pose_table, samples_from_table
     from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     optima = read_table(snakemake.input.optima, OPTIMA)
-    names, section = estimated_parameters(optima), section_of(sampling_settings(snakemake.params.sampling))
+    names, section = estimated_parameters(optima), sampling_settings(snakemake.params.sampling).section
     chains = {}
     for name in optima["stage"]:
         table = read_table(Path(snakemake.input.samples) / f"{name}.parquet", SAMPLES)

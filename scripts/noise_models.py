@@ -8,6 +8,7 @@ with stage(snakemake) as log:
     from linepose.config.experiments import RepeatabilitySection
     from linepose.config.platform import Platform
     from linepose.config.study import sampling_settings
+    from linepose.estimation.noise_models import BALANCED, PUBLISHED, ROBUST, SHARED
     from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import named_pair, read_accepted, read_others
     from linepose.experiments.noise_models import (
@@ -19,7 +20,6 @@ with stage(snakemake) as log:
         weights_table,
     )
     from linepose.experiments.schemas import IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
-    from linepose.likelihood.names import BALANCED, PUBLISHED, ROBUST, SHARED
     from linepose.tables import write_table
 
     params, files = snakemake.params, snakemake.input
@@ -32,8 +32,12 @@ with stage(snakemake) as log:
     pair = named_pair(data, repeatability, params.file)
     sets |= {name: data.accepted.survey.select(list(numbers)) for name, numbers in pair.items()}
     independence = sampling_settings(params.independence_sampling)
-    settings = {PUBLISHED: sampling_settings(params.sampling), SHARED: independence, BALANCED: independence}
-    settings[ROBUST] = independence.replaced(n_steps=params.robust_steps)
+    settings = {
+        PUBLISHED.name: sampling_settings(params.sampling),
+        SHARED.name: independence,
+        BALANCED.name: independence,
+    }
+    settings[ROBUST.name] = independence.replaced(n_steps=params.robust_steps)
     search = Search.model_validate(params.search)
     fits = []
     for fit in fit_noise_models(sets, platform.intrinsics(), settings, platform.start_pose(), params.seed, search):

@@ -4,11 +4,11 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
+    from linepose.estimation.noise_models import PUBLISHED
     from linepose.estimation.optimise import Search
     from linepose.experiments.accepted import read_accepted
     from linepose.experiments.schemas import SENSITIVITY
     from linepose.experiments.sensitivity import camera_changes, sensitivity
-    from linepose.likelihood.names import PUBLISHED
     from linepose.likelihood.pixels import PixelLikelihood
     from linepose.pipeline.platform_likelihood import platform_likelihood
     from linepose.tables import write_table
@@ -17,7 +17,7 @@ with stage(snakemake) as log:
     search = Search.model_validate(snakemake.params.search)
     nominal = read_accepted(platform, snakemake.input.observations, snakemake.input.outliers).accepted
     changes = {}
-    if platform.noise_model == PUBLISHED:  # the other models' residuals are in pixels
+    if platform.noise_model == PUBLISHED.name:  # the other models' residuals are in pixels
         changes["residual in pixels"] = PixelLikelihood(nominal)
     for name, camera in camera_changes(platform.intrinsics()).items():
         changes[name] = platform_likelihood(platform, nominal.survey, camera)

@@ -1,6 +1,5 @@
 import os
 from pathlib import Path
-from typing import get_args
 
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
@@ -8,7 +7,7 @@ from snakemake.logging import logger
 from linepose.config.project import load_project
 from linepose.survey.datasets import can_be_reached
 from linepose.errors import LineposeError
-from linepose.likelihood.names import NoiseModelName
+from linepose.estimation.noise_models import NOISE_MODELS
 from linepose.pipeline import code_digest
 from linepose.tables import read_table
 
@@ -35,7 +34,6 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
-NOISE_MODELS = get_args(NoiseModelName)
 PLATFORMS = [name for name in STUDY.platforms if name in PROJECT.platforms]
 
 

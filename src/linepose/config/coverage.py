@@ -1,14 +1,14 @@
 """What config.yaml says of the coverage study."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, model_validator
 
+from linepose.estimation.noise_models import MEANINGS, NOISE_MODELS, NoiseModelName
 from linepose.experiments.coverage_survey import NoiseLevels
 from linepose.settings import Settings
 
 Level = Annotated[float, Field(ge=0)]
-NoiseModelName = Literal["published", "shared", "balanced"]
 
 
 class RegimeSection(Settings):
@@ -28,10 +28,9 @@ class RegimeSection(Settings):
         False, description="Draw shared, white and pixel level for each survey from the model's priors instead."
     )
     noise_models: list[NoiseModelName] = Field(
-        ["published", "shared", "balanced"],
+        [one.name for one in NOISE_MODELS.values() if one.quick],
         min_length=1,
-        description="published: the paper's. shared: navigation error shared within a view, levels inferred. balanced: "
-        "the same, without the determinants' pull on the pose.",
+        description=f"The noise models that estimate. {MEANINGS}",
     )
 
     @model_validator(mode="after")

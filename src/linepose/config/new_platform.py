@@ -10,6 +10,7 @@ import yaml
 
 from linepose.config.platform import NavigationSection, Platform
 from linepose.errors import InputError
+from linepose.estimation.noise_models import DEFAULT
 from linepose.geometry.camera import Camera, CameraSigmas
 from linepose.settings import validated
 from linepose.survey.hand_measured import HandMeasured
@@ -52,7 +53,21 @@ def check_name(name: str) -> str:
 def platform_text(new: NewPlatform) -> str:
     """The platform file as YAML, each key commented; raises InputError for values that no platform has."""
     text = "\n".join(
-        [*_head(new), *_camera(new), "", *_hand(new), "", *_navigation(new), "", *_source(new), "", *_experiments(), ""]
+        [
+            *_head(new),
+            *_camera(new),
+            "",
+            *_hand(new),
+            "",
+            *_noise_model(),
+            "",
+            *_navigation(new),
+            "",
+            *_source(new),
+            "",
+            *_experiments(),
+            "",
+        ]
     )
     validated(Platform, yaml.safe_load(text), f"{new.name}.yaml")
     return text
@@ -106,6 +121,10 @@ def _hand(new: NewPlatform) -> list[str]:
         f"  sigma_position_m: {_number(new.sigma_position_m)} # {about['sigma_position_m']}",
         f"  sigma_euler_deg: {_number(new.sigma_euler_deg)} # {about['sigma_euler_deg']}",
     ]
+
+
+def _noise_model() -> list[str]:
+    return [f"noise_model: {DEFAULT.name} # {DEFAULT.meaning}; the others: docs/noise_models.md"]
 
 
 def _navigation(new: NewPlatform) -> list[str]:

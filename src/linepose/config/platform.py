@@ -22,8 +22,8 @@ from linepose.config.map_frame import MapFrameSection
 from linepose.config.outline import OutlineSection
 from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.errors import InputError
+from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName
 from linepose.geometry.camera import Camera
-from linepose.likelihood.names import NoiseModelName
 from linepose.likelihood.prior import PosePrior, pose_prior
 from linepose.settings import Settings, faults_of, validated
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
@@ -98,13 +98,7 @@ class Platform(Settings):
     simulation: Simulation | None = Field(
         None, description="A simulated survey with a known truth: keys and units in linepose.simulation.settings."
     )
-    noise_model: NoiseModelName = Field(
-        "published",
-        description="The likelihood's model of the noise. published: every line of a view errs independently, as "
-        "reported (the paper). shared: the navigation error is common to a view, its level inferred. "
-        "balanced: shared, without the determinants' pull on the pose (recommended). robust: shared, with heavy tails "
-        "for bad views and points.",
-    )
+    noise_model: NoiseModelName = Field(DEFAULT.name, description=f"The likelihood's model of the noise. {MEANINGS}")
     prior: Literal["none", "hand_measured"] = Field(
         "none",
         description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start. "

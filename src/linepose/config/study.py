@@ -7,10 +7,10 @@ from pydantic import Field, NonNegativeInt
 
 from linepose.config.coverage import CoverageSection
 from linepose.config.platform import read_yaml
+from linepose.estimation.noise_models import NOISE_MODELS, noise_model
 from linepose.estimation.optimise import Search
 from linepose.estimation.outliers import OutlierSettings
 from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
-from linepose.likelihood.names import sampling_section
 from linepose.settings import Settings, validated
 
 
@@ -32,6 +32,12 @@ def sampling_settings(values: dict[str, Any]) -> SamplingSettings | Independence
     return section.model_validate(values)
 
 
+def _sampled(section: str) -> str:
+    return (
+        f"MCMC of the noise models: {', '.join(one.name for one in NOISE_MODELS.values() if one.section == section)}."
+    )
+
+
 class Study(Settings):
     """config/config.yaml."""
 
@@ -45,15 +51,15 @@ class Study(Settings):
     seed: NonNegativeInt = Field(2017, description="Seed from which every random number is derived.")
     search: Search = Field(Search(), description="Optimisation.")
     outliers: OutlierSettings = Field(OutlierSettings(), description="Outlier removal.")
-    sampling: SamplingSettings = Field(SamplingSettings(), description="MCMC of the published noise model.")
+    sampling: SamplingSettings = Field(SamplingSettings(), description=_sampled("sampling"))
     independence_sampling: IndependenceSettings = Field(
-        IndependenceSettings(), description="MCMC of the noise models shared, balanced and robust."
+        IndependenceSettings(), description=_sampled("independence_sampling")
     )
     coverage: CoverageSection = Field(CoverageSection(), description="Coverage study; not part of the main job.")
 
-    def sampling_of(self, noise_model: str) -> SamplingSettings | IndependenceSettings:
-        """The sampling section for a noise model."""
-        section = getattr(self, sampling_section(noise_model))
+    def sampling_of(self, name: str) -> SamplingSettings | IndependenceSettings:
+        """The sampling section for a noise model, by name; raises InputError for an unknown one."""
+        section = getattr(self, noise_model(name).section)
         assert isinstance(section, SamplingSettings | IndependenceSettings)
         return section
 

@@ -7,17 +7,19 @@ start itself, and the better end inside the range counts.
 """
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, PositiveFloat
-from scipy.optimize import minimize
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
 from linepose.geometry.pose import N_PARAMETERS, check_pose
-from linepose.likelihood.base import Likelihood
 from linepose.settings import Settings
+
+if TYPE_CHECKING:  # configuration has the search's settings and must be read quickly
+    from linepose.likelihood.base import Likelihood
 
 _UNDEFINED = 1e300  # Powell's line search needs a number where the likelihood is zero
 _STEPS = np.array([1.0, -1.0])
@@ -62,7 +64,7 @@ def bounded(unbounded: ArrayLike, centre: ArrayLike, half_width: ArrayLike) -> F
     return np.asarray(centre, dtype=float) + np.asarray(half_width, dtype=float) * np.sin(unbounded)
 
 
-def optimise(likelihood: Likelihood, start: ArrayLike, search: Search | None = None) -> Optimum:
+def optimise(likelihood: "Likelihood", start: ArrayLike, search: Search | None = None) -> Optimum:
     """The optimum from a start pose (6,): by Powell's method (section 3.5), then by gradients where the model has more.
 
     All ranges are centred on the start. Raises InputError for a start that is not finite.
@@ -74,7 +76,7 @@ def optimise(likelihood: Likelihood, start: ArrayLike, search: Search | None = N
 
 
 def optimise_within(
-    likelihood: Likelihood, start: Floats, centre: Floats, half_width: Floats, search: Search
+    likelihood: "Likelihood", start: Floats, centre: Floats, half_width: Floats, search: Search
 ) -> Optimum:
     """The same from parameters (P,), within `centre +- half_width` (P,) each."""
     if likelihood.n_parameters == N_PARAMETERS:
@@ -90,8 +92,10 @@ def optimise_within(
     return replace(best, n_evaluations=first.n_evaluations + sum(end.n_evaluations for end in ends))
 
 
-def _powell(likelihood: Likelihood, start: Floats, centre: Floats, half_width: Floats, search: Search) -> Optimum:
+def _powell(likelihood: "Likelihood", start: Floats, centre: Floats, half_width: Floats, search: Search) -> Optimum:
     """Powell's method over the pose, parameters beyond it kept at the start's."""
+    from scipy.optimize import minimize
+
     unbounded = np.arcsin(np.clip((start - centre) / half_width, -1.0, 1.0))
     log_likelihood = likelihood.log_likelihood
 
@@ -115,7 +119,9 @@ def _powell(likelihood: Likelihood, start: Floats, centre: Floats, half_width: F
     )
 
 
-def minimise(likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, search: Search | None = None) -> Optimum:
+def minimise(
+    likelihood: "Likelihood", parameters: ArrayLike, start: ArrayLike, search: Search | None = None
+) -> Optimum:
     """The optimum that BFGS reaches from parameters (P,) near it, within the same range around a start pose (6,).
 
     Gradients are central differences, in one batch. Raises InputError for a start that is not finite.
@@ -126,7 +132,9 @@ def minimise(likelihood: Likelihood, parameters: ArrayLike, start: ArrayLike, se
     return _climb(likelihood, np.asarray(parameters, dtype=float), centre, half_width)
 
 
-def _climb(likelihood: Likelihood, first: Floats, centre: Floats, half_width: Floats) -> Optimum:
+def _climb(likelihood: "Likelihood", first: Floats, centre: Floats, half_width: Floats) -> Optimum:
+    from scipy.optimize import minimize
+
     origin = np.arcsin(np.clip((first - centre) / half_width, -1.0, 1.0))
     unit = _UNIT * likelihood.half_widths(_UNIT_M, _UNIT_RAD) / half_width
     moves = _DIFFERENCE * np.vstack([np.eye(len(unit)), -np.eye(len(unit))])
@@ -153,7 +161,7 @@ def _climb(likelihood: Likelihood, first: Floats, centre: Floats, half_width: Fl
     )
 
 
-def laplace_covariance(likelihood: Likelihood, optimum: ArrayLike) -> Floats:
+def laplace_covariance(likelihood: "Likelihood", optimum: ArrayLike) -> Floats:
     """Covariance (P, P) from the curvature of -log L at its minimum (P,).
 
     Central differences twice: first along the parameters, the pose's with a step of 1e-5 and each other with a
@@ -177,7 +185,7 @@ def laplace_covariance(likelihood: Likelihood, optimum: ArrayLike) -> Floats:
     return axes @ axes.T
 
 
-def _hessian(likelihood: Likelihood, centre: Floats, axes: Floats) -> Floats:
+def _hessian(likelihood: "Likelihood", centre: Floats, axes: Floats) -> Floats:
     """Second derivatives of -log L by steps along the columns of `axes` (P, P), in units of them, in one batch."""
     n = len(centre)
     pairs = [(i, j) for i in range(n) for j in range(i, n)]

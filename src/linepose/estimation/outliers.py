@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pandas as pd
@@ -14,9 +14,11 @@ from linepose.arrays import Floats
 from linepose.errors import EstimationError
 from linepose.estimation.optimise import Optimum, Search, optimise
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
-from linepose.likelihood.base import Likelihood
 from linepose.settings import Settings
 from linepose.tables import flags, floats, whole_numbers
+
+if TYPE_CHECKING:
+    from linepose.likelihood.base import Likelihood
 
 OUTLIERS: Final = pa.schema(
     [
@@ -47,7 +49,7 @@ class RejectionStage:
 
 
 def reject_outliers(
-    likelihood: Likelihood,
+    likelihood: "Likelihood",
     start: ArrayLike,
     minimum_observations: int,
     search: Search | None = None,

@@ -5,20 +5,20 @@ the posterior is nearly Gaussian there, so that most steps propose from a wide c
 """
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal
 
-import emcee
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
-from linepose.estimation.moves import independence_move
-from linepose.estimation.optimise import laplace_covariance
-from linepose.likelihood.base import Likelihood
-from linepose.likelihood.names import PUBLISHED
 from linepose.settings import Settings
+
+if TYPE_CHECKING:  # configuration has these settings and must be read quickly: what samples is imported late
+    import emcee
+
+    from linepose.likelihood.base import Likelihood
 
 _WARM_UPS: Final = 2
 _OPEN_M, _OPEN_RAD = 0.02, 0.005  # where walkers start around an optimum whose curvature is of no use
@@ -27,6 +27,7 @@ _OPEN_M, _OPEN_RAD = 0.02, 0.005  # where walkers start around an optimum whose 
 class SamplingSettings(Settings):
     """The ensemble's size, length and start, moved as in the paper (whose numbers are the defaults)."""
 
+    section: ClassVar[Literal["sampling"]] = "sampling"
     n_walkers: int = Field(250, ge=4, description="Walkers of the ensemble.")
     n_burn_in: NonNegativeInt = Field(100, description="Steps thrown away.")
     n_steps: int = Field(100, ge=4, description="Steps kept.")
@@ -41,6 +42,7 @@ class IndependenceSettings(Settings):
     The rest are differential-evolution moves, which go on where the posterior is no Gaussian at all.
     """
 
+    section: ClassVar[Literal["independence_sampling"]] = "independence_sampling"
     n_walkers: int = Field(24, ge=24, description="Walkers of the ensemble, two a parameter or more.")
     n_burn_in: int = Field(160, ge=20, description="Steps that fit the proposals, thrown away.")
     n_steps: int = Field(1000, ge=4, description="Steps kept.")
@@ -71,7 +73,7 @@ class Chain:
 
 
 def sample(
-    likelihood: Likelihood,
+    likelihood: "Likelihood",
     optimum: ArrayLike,
     seed: int,
     settings: SamplingSettings | IndependenceSettings | None = None,
@@ -82,10 +84,12 @@ def sample(
     The same seed gives the same samples on any number of cores: a step's proposals are drawn before they are evaluated.
     Raises InputError for fewer walkers than two a parameter.
     """
+    import emcee
+
     settings = settings or SamplingSettings()
     if settings.n_walkers < 2 * likelihood.n_parameters:
         raise InputError(
-            f"{section_of(settings)}.n_walkers",
+            f"{settings.section}.n_walkers",
             f"{settings.n_walkers} walkers",
             f"at least {2 * likelihood.n_parameters}, two a parameter",
             "raise it",
@@ -109,25 +113,17 @@ def sample(
     )
 
 
-def default_settings(noise_model: str) -> SamplingSettings | IndependenceSettings:
-    """The settings that a noise model is sampled with where nothing else is said."""
-    return SamplingSettings() if noise_model == PUBLISHED else IndependenceSettings()
-
-
-def section_of(settings: SamplingSettings | IndependenceSettings) -> str:
-    """The section of config.yaml that holds such settings."""
-    return "independence_sampling" if isinstance(settings, IndependenceSettings) else "sampling"
-
-
 def _ensemble(
-    likelihood: Likelihood,
-    start: Floats | emcee.State,
+    likelihood: "Likelihood",
+    start: "Floats | emcee.State",
     moves: Any,
     random: np.random.RandomState,
     n_steps: int,
     show_progress: bool,
-) -> emcee.EnsembleSampler:
+) -> "emcee.EnsembleSampler":
     """An ensemble after its steps from the start (W, P)."""
+    import emcee
+
     n_walkers = len(start.coords if isinstance(start, emcee.State) else start)
     sampler = emcee.EnsembleSampler(
         n_walkers, likelihood.n_parameters, likelihood.log_likelihoods, moves=moves, vectorize=True
@@ -138,16 +134,21 @@ def _ensemble(
 
 
 def _fitted_proposals(
-    likelihood: Likelihood,
+    likelihood: "Likelihood",
     optimum: Floats,
     random: np.random.RandomState,
     settings: IndependenceSettings,
     show_progress: bool,
-) -> tuple[Floats | emcee.State, list[tuple[Any, float]]]:
+) -> "tuple[Floats | emcee.State, list[tuple[Any, float]]]":
     """Walkers after the warm-up, and the moves that it taught: half from the curvature, half from what that drew.
 
     Where the curvature leaves a direction open, the first half goes by differential evolution alone.
     """
+    import emcee
+
+    from linepose.estimation.moves import independence_move
+    from linepose.estimation.optimise import laplace_covariance
+
     share = settings.independent_share
     evolution = [(emcee.moves.DEMove(), 0.8 * (1 - share)), (emcee.moves.DESnookerMove(), 0.2 * (1 - share))]
     try:

@@ -16,14 +16,13 @@ from scipy.stats import chi, kstest
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.estimation.noise_models import likelihood_of
+from linepose.estimation.noise_models import PUBLISHED, SHARED, likelihood_of
 from linepose.estimation.optimise import Search
 from linepose.experiments.estimate import Estimate, estimate_nearby
 from linepose.experiments.repeatability import consistency, split_numbers
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.likelihood.base import Likelihood
-from linepose.likelihood.names import PUBLISHED, SHARED
 from linepose.pipeline.batches import batch_ranges
 from linepose.survey.observations import Survey
 
@@ -125,7 +124,7 @@ def groups_of(
     """
     known = estimates.set_index(["noise_model", "set"])
     groups: dict[str, dict[str, Group]] = {}
-    for noise_model in (PUBLISHED, SHARED):
+    for noise_model in (PUBLISHED.name, SHARED.name):
         groups[noise_model] = {}
         for name, survey in surveys.items():
             estimate = known.loc[(noise_model, sets[name])]

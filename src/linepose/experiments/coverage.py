@@ -18,15 +18,14 @@ from scipy.stats import chi2
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
-from linepose.estimation.balancing import balanced
 from linepose.estimation.importance import WeightedSamples, importance_samples
+from linepose.estimation.noise_models import likelihood_of
 from linepose.estimation.optimise import Optimum, laplace_covariance, minimise
 from linepose.experiments.coverage_survey import NoiseLevels, draw_survey, levels_from_prior
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
-from linepose.likelihood.published import PublishedLikelihood
-from linepose.likelihood.shared import SharedLikelihood, SharedPriors
+from linepose.likelihood.shared import SharedPriors
 from linepose.simulation.settings import SimulationSettings
 from linepose.survey.observations import Survey
 
@@ -63,13 +62,7 @@ class Cell:
 
     def likelihood(self, survey: Survey) -> Likelihood:
         """The noise model's likelihood of a survey; raises InputError for a name that is none."""
-        if self.noise_model == "published":
-            return PublishedLikelihood(survey, self.camera)
-        if self.noise_model == "shared":
-            return SharedLikelihood(survey, self.camera)
-        if self.noise_model == "balanced":
-            return balanced(survey, self.camera, self.start_pose)
-        raise InputError("noise model", self.noise_model, "published, shared or balanced", "correct the name")
+        return likelihood_of(self.noise_model, survey, self.camera, self.start_pose)
 
     def compile(self) -> None:
         """Evaluate the likelihood once, on one core, so that processes that fork from this one need not compile it."""

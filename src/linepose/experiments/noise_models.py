@@ -16,21 +16,22 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.estimation.diagnostics import ChainDiagnostics, diagnose_samples
 from linepose.estimation.identifiability import identifiability, in_body_axes, in_words
-from linepose.estimation.noise_models import likelihood_of
+from linepose.estimation.noise_models import BALANCED, ROBUST, SHARED, likelihood_of
 from linepose.estimation.optimise import Optimum, Search, optimise
-from linepose.estimation.sampling import Chain, IndependenceSettings, SamplingSettings, sample, section_of, stage_seed
+from linepose.estimation.sampling import Chain, IndependenceSettings, SamplingSettings, sample, stage_seed
 from linepose.experiments.estimate import observation_list
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
-from linepose.likelihood.names import BALANCED, ROBUST, SHARED
 from linepose.likelihood.robust import RobustSharedLikelihood
 from linepose.likelihood.shared import LEVEL_NAMES, SHARED_PARAMETERS, SharedLikelihood
 from linepose.survey.observations import Survey
 
 ALL, INLIERS = "all", "inliers"
-_ONLY_ON: Final = dict.fromkeys((BALANCED, ROBUST), (ALL, INLIERS))  # elsewhere they would cost more than they tell
+_ONLY_ON: Final = dict.fromkeys(
+    (BALANCED.name, ROBUST.name), (ALL, INLIERS)
+)  # elsewhere they would cost more than they tell
 EXTRA_PARAMETERS: Final = SHARED_PARAMETERS[N_PARAMETERS:]
 LEVELS: Final = tuple(name.removeprefix("log_") for name in LEVEL_NAMES)
 _QUANTILES: Final = {"": 0.5, "_low": 0.16, "_high": 0.84}
@@ -79,9 +80,7 @@ def fit_noise_models(
             likelihood = likelihood_of(noise_model, survey, camera, start)
             optimum = optimise(likelihood, start, search)
             chain = sample(likelihood, optimum.parameters, stage_seed(seed, place), how)
-            yield Fit(
-                noise_model, name, likelihood, optimum, chain, diagnose_samples(chain.parameters, section_of(how))
-            )
+            yield Fit(noise_model, name, likelihood, optimum, chain, diagnose_samples(chain.parameters, how.section))
 
 
 def chosen(fits: list[Fit], noise_model: str, name: str) -> Fit:
@@ -98,7 +97,7 @@ def noise_model_table(fits: list[Fit], true_pose: ArrayLike | None = None) -> pd
     The two are the shared-error estimate of the accepted observations, and the true pose (6,) where it is known, in
     sigmas of the fit itself. Columns as in `schemas.NOISE_MODELS`.
     """
-    reference = chosen(fits, SHARED, INLIERS)
+    reference = chosen(fits, SHARED.name, INLIERS)
     covariance = reference.pose_covariance()
     return pd.DataFrame(
         [
@@ -160,7 +159,7 @@ def identifiability_table(fits: list[Fit], hand_pose: ArrayLike, hand_covariance
     Rotations are turns about the body's axes. The hand measurement, a pose (6,) with covariance (6, 6), stands for the
     pose's prior, which takes no part in the estimate. Columns as in `schemas.IDENTIFIABILITY`.
     """
-    fit = chosen(fits, SHARED, INLIERS)
+    fit = chosen(fits, SHARED.name, INLIERS)
     likelihood = fit.likelihood
     assert isinstance(likelihood, SharedLikelihood)
     names, posterior = in_body_axes(likelihood.parameter_names, fit.optimum.parameters, fit.chain.covariance())
@@ -185,7 +184,7 @@ def weights_table(fits: list[Fit], accepted: ArrayLike) -> pd.DataFrame:
 
     `removed` says whether the outlier removal took the observation out. Columns as in `schemas.WEIGHTS`.
     """
-    fit = chosen(fits, ROBUST, ALL)
+    fit = chosen(fits, ROBUST.name, ALL)
     likelihood = fit.likelihood
     assert isinstance(likelihood, RobustSharedLikelihood)
     weights, survey = likelihood.weights(fit.optimum.parameters), likelihood.survey

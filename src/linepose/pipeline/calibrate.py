@@ -12,20 +12,17 @@ import pandas as pd
 
 from linepose.errors import InputError
 from linepose.estimation.diagnostics import diagnose_samples
-from linepose.estimation.noise_models import NOISE_MODELS, likelihood_of
+from linepose.estimation.noise_models import DEFAULT, likelihood_of, noise_model
 from linepose.estimation.optimise import Search
 from linepose.estimation.outliers import outlier_table, reject_outliers, stage_observations
 from linepose.estimation.sampling import (
     IndependenceSettings,
     SamplingSettings,
-    default_settings,
     sample,
-    section_of,
     stage_seed,
 )
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS
-from linepose.likelihood.names import PUBLISHED
 from linepose.likelihood.prior import pose_prior
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.residual_tables import residual_tables
@@ -60,7 +57,7 @@ class CalibrationSettings:
     the start. `sampling` is that of the noise model where it is None. Every random number follows from `seed`.
     """
 
-    noise_model: str = PUBLISHED
+    noise_model: str = DEFAULT.name
     prior: Literal["none", "hand_measured"] = "none"
     threshold_px: float = 5.0
     minimum_observations: int = 10
@@ -124,10 +121,10 @@ def calibrate(
     names = likelihood.parameter_names
     optimum = optima.loc[0, list(names)].to_numpy(dtype=float, copy=True)
     seed = stage_seed(settings.seed, len(accepted[_STAGE]))
-    sampling = settings.sampling or default_settings(settings.noise_model)
+    sampling = settings.sampling or noise_model(settings.noise_model).sampling()
     chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, sampling)
     samples = sample_table(chain, names)
-    diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)), section_of(sampling))
+    diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)), sampling.section)
     residuals, points = residual_tables(likelihood, accepted, {_STAGE: optimum})
     return Calibration(
         pose=optimum[:N_PARAMETERS],
@@ -148,9 +145,7 @@ def calibrate(
 
 def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.DataFrame:
     """The observations with the columns that may be left out; raises InputError."""
-    if settings.noise_model not in NOISE_MODELS:
-        known = ", ".join(NOISE_MODELS)
-        raise InputError("noise_model", repr(settings.noise_model), f"one of {known}", "choose one of these")
+    noise_model(settings.noise_model)
     if settings.prior not in PRIORS:
         raise InputError("prior", repr(settings.prior), f"one of {', '.join(PRIORS)}", "choose one of these")
     missing = [name for name in _NEEDED if name not in observations.columns]

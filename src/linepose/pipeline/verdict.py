@@ -9,7 +9,7 @@ from math import isnan
 from typing import Final
 
 from linepose.estimation.diagnostics import MAXIMUM_R_HAT, MINIMUM_STEPS_PER_TIME
-from linepose.likelihood.names import PUBLISHED, sampling_section
+from linepose.estimation.noise_models import PUBLISHED, noise_model
 
 CONSISTENT: Final = (0.5, 1.5)  # reduced chi-square of errors that are about as large as their sigmas
 MAX_INTRACLASS_CORRELATION: Final = (
@@ -58,7 +58,7 @@ class Evidence:
     influence: float | None = None
     truth_sigmas: float | None = None
     truth_parameter: str = ""
-    noise_model: str = PUBLISHED
+    noise_model: str = PUBLISHED.name
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ def chain_length(evidence: Evidence) -> Check:
         Level.CARE,
         f"Chain too short: {found} The rule is {MINIMUM_STEPS_PER_TIME} autocorrelation times and an R-hat below "
         f"{MAXIMUM_R_HAT}. The pose is not affected, its sampled sigmas are rough.",
-        f"Set {sampling_section(evidence.noise_model)}.n_steps to {steps} or more and run again.",
+        f"Set {noise_model(evidence.noise_model).section}.n_steps to {steps} or more and run again.",
         f"the chain has {evidence.n_steps} steps where {steps} are needed",
     )
 
@@ -179,7 +179,7 @@ def independence(evidence: Evidence) -> Check:
     found = f"{share:.0f} % of the residuals' variance is common to all points of a view."
     if evidence.intraclass_correlation <= MAX_INTRACLASS_CORRELATION:
         return Check("Independence within a view", Level.GOOD, found)
-    if evidence.noise_model != PUBLISHED:
+    if noise_model(evidence.noise_model).infers_levels:
         told = f"{found} The {evidence.noise_model} noise model infers how much, and its sigmas allow for it."
         return Check("Independence within a view", Level.GOOD, told)
     if evidence.sigma_factor is not None and evidence.sigma_factor <= SIGMA_FACTOR:

@@ -5,7 +5,8 @@ import pytest
 import linepose.estimation.sampling
 from linepose.errors import EstimationError, InputError
 from linepose.estimation.diagnostics import diagnose_samples
-from linepose.estimation.sampling import IndependenceSettings, SamplingSettings, default_settings, sample, stage_seed
+from linepose.estimation.noise_models import noise_model
+from linepose.estimation.sampling import IndependenceSettings, SamplingSettings, sample, stage_seed
 
 SHORT = SamplingSettings(n_walkers=12, n_burn_in=3, n_steps=5)
 
@@ -172,5 +173,5 @@ def test_too_few_walkers_are_refused_in_one_line():
 
 
 def test_noise_models_with_levels_are_sampled_by_fitted_proposals():
-    assert default_settings("published") == SamplingSettings()
-    assert default_settings("shared") == default_settings("robust") == IndependenceSettings()
+    assert noise_model("published").sampling is SamplingSettings
+    assert noise_model("shared").sampling is noise_model("robust").sampling is IndependenceSettings

@@ -9,9 +9,9 @@ from matplotlib.lines import Line2D
 from scipy.stats import chi
 
 from linepose.errors import InputError
+from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.output.figures.checks import usable_rows
-from linepose.output.figures.noise_models import COLOURS
 from linepose.output.figures.style import BLACK, GREY, WIDE_IN, blank_figure, styled
 
 _STYLES: Final = ("-", "--", "-.", ":")
@@ -32,7 +32,10 @@ def consistency(table: pd.DataFrame) -> Figure:
     shown = np.linspace(0, _MOST, 300)
     axes.plot(shown, chi.cdf(shown, N_PARAMETERS), color=BLACK, linewidth=2.0)
     handles = [Line2D([], [], color=BLACK, linewidth=2.0, label="right sigmas")]
-    handles += [Line2D([], [], color=COLOURS[name], linewidth=2.4, label=name) for name in rows["noise_model"].unique()]
+    handles += [
+        Line2D([], [], color=noise_model(name).colour, linewidth=2.4, label=name)
+        for name in rows["noise_model"].unique()
+    ]
     halves, single = 0, 0
     for name, part in rows.groupby("comparison", sort=False):
         one = int(part["split"].max()) == 0
@@ -43,7 +46,7 @@ def consistency(table: pd.DataFrame) -> Figure:
         for model, distances in part.groupby("noise_model", sort=False)["mahalanobis"]:
             ordered = np.sort(np.minimum(distances.to_numpy(), 0.985 * _MOST))
             share = chi.cdf(ordered, N_PARAMETERS) if one else np.arange(1, len(ordered) + 1) / len(ordered)
-            axes.plot(ordered, share, color=COLOURS[str(model)], drawstyle="steps-post", **style)
+            axes.plot(ordered, share, color=noise_model(str(model)).colour, drawstyle="steps-post", **style)
         single, halves = single + one, halves + (not one)
     axes.set(
         xlabel="Distance of the two poses (sigmas)", ylabel="Share of pairs below", xlim=(0, _MOST), ylim=(0, 1.02)

@@ -9,14 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from scipy.stats import binom
 
+from linepose.estimation.noise_models import noise_model
 from linepose.experiments.coverage import N_RANKED, RANK_COLUMNS
 from linepose.experiments.coverage_summary import N_BINS, RMSE_COLUMNS, rank_histogram
 from linepose.output.figures.checks import usable_rows
-from linepose.output.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, WIDE_IN, blank_figure, styled
+from linepose.output.figures.style import GREY, WIDE_IN, blank_figure, styled
 
-_COLOURS: Final = {"published": RED, "shared": ORANGE, "balanced": BLUE}
 _PANELS_A_ROW: Final = 4
-_OTHERS: Final = (GREEN, PURPLE, BLACK)
 _PARAMETERS: Final = ("$r_x$", "$r_y$", "$r_z$", r"$\theta e_x$", r"$\theta e_y$", r"$\theta e_z$")
 
 
@@ -119,7 +118,7 @@ def _names(rows: pd.DataFrame, column: str) -> list[str]:
 
 
 def _colour(model: str) -> str:
-    return _COLOURS.get(model, _OTHERS[len(model) % len(_OTHERS)])
+    return noise_model(model).colour
 
 
 def _legend(figure: Figure, models: list[str]) -> None:

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 
 from linepose.estimation.identifiability import WORDS
+from linepose.estimation.noise_models import SHARED
 from linepose.likelihood.shared import SharedPriors
 from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLUE, GREY, RED, SKY, WIDE_IN, blank_figure, styled
@@ -68,5 +69,5 @@ def identifiability_caption(table: pd.DataFrame, estimates: pd.DataFrame) -> str
 
 def shared_inliers(estimates: pd.DataFrame) -> pd.Series:
     """The shared model's row of the accepted observations."""
-    rows = estimates[(estimates["noise_model"] == "shared") & (estimates["set"] == "inliers")]
-    return usable_rows(rows, list(_LEVELS), "noise_models.parquet, shared, inliers").iloc[0]
+    rows = estimates[(estimates["noise_model"] == SHARED.name) & (estimates["set"] == "inliers")]
+    return usable_rows(rows, list(_LEVELS), f"noise_models.parquet, {SHARED.name}, inliers").iloc[0]

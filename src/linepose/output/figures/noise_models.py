@@ -7,12 +7,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from linepose.arrays import Floats
+from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.output.figures.checks import usable_rows
-from linepose.output.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, WIDE_IN, blank_figure, styled
+from linepose.output.figures.style import GREY, WIDE_IN, blank_figure, styled
 
-COLOURS: Final = {"published": ORANGE, "shared": BLUE, "balanced": GREEN, "robust": PURPLE}
-_MARKERS: Final = {"published": "s", "shared": "o", "balanced": "D", "robust": "^"}
 _NAMES: Final = ("$r_x$ (m)", "$r_y$ (m)", "$r_z$ (m)", *(rf"$\theta e_{axis}$ (rad)" for axis in "xyz"))
 _SPREAD: Final = 0.5  # of a row, over which the models are laid out
 _ROW_IN, _ROOM_IN = 0.24, 0.9
@@ -39,8 +38,8 @@ def noise_models(table: pd.DataFrame, hand_pose: Floats, true_pose: Floats | Non
                 part[POSE_COLUMNS[index]],
                 height + _SPREAD * ((place + 0.5) / len(models) - 0.5),
                 xerr=2 * part[SIGMA_COLUMNS[index]],
-                fmt=_MARKERS[model],
-                color=COLOURS[model],
+                fmt=noise_model(model).marker,
+                color=noise_model(model).colour,
                 markersize=3,
                 elinewidth=1.0,
                 label=model,

@@ -7,10 +7,10 @@ import pandas as pd
 from scipy.stats import chi
 
 from linepose.errors import InputError
+from linepose.estimation.noise_models import BALANCED, PUBLISHED, ROBUST, SHARED
 from linepose.experiments import schemas as schemas
 from linepose.experiments.noise_models import ALL, INLIERS
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.likelihood.names import BALANCED, PUBLISHED, ROBUST, SHARED
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sections import SectionOnPage, TableOnPage
 
@@ -42,21 +42,21 @@ def noise_models_section(results: PlatformResults) -> SectionOnPage | None:
 
 def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.DataFrame) -> str:
     """Which model to use and why, and what speaks against it."""
-    shared, published = _estimate(estimates, SHARED, INLIERS), _estimate(estimates, PUBLISHED, INLIERS)
-    factor = {model: _halves_factor(summary, model) for model in (PUBLISHED, SHARED)}
+    shared, published = _estimate(estimates, SHARED.name, INLIERS), _estimate(estimates, PUBLISHED.name, INLIERS)
+    factor = {model: _halves_factor(summary, model) for model in (PUBLISHED.name, SHARED.name)}
     sentences = [
         "The published model takes each line of a view to have a navigation error of its own; the shared model takes "
         "most of it to be common to the view and infers how much: here "
         f"{shared['shared_level']:.2f} of the reported sigmas is shared and {shared['white_level']:.2g} is each line's "
         f"own, with {shared['pixel_level']:.1f} times the stated pixel noise."
     ]
-    if np.isfinite(factor[PUBLISHED]) and np.isfinite(factor[SHARED]):
+    if np.isfinite(factor[PUBLISHED.name]) and np.isfinite(factor[SHARED.name]):
         sentences.append(
             "Random halves of the accepted observations lie "
-            f"{factor[PUBLISHED]:.2f} times as far apart as the published model's sigmas promise, and "
-            f"{factor[SHARED]:.2f} times under the shared model."
+            f"{factor[PUBLISHED.name]:.2f} times as far apart as the published model's sigmas promise, and "
+            f"{factor[SHARED.name]:.2f} times under the shared model."
         )
-        sentences.append(_recommendation(factor[PUBLISHED], factor[SHARED]))
+        sentences.append(_recommendation(factor[PUBLISHED.name], factor[SHARED.name]))
     moved = (shared[list(POSE_COLUMNS)] - published[list(POSE_COLUMNS)]).to_numpy(dtype=float)
     in_sigmas = np.abs(moved / shared[list(SIGMA_COLUMNS)].to_numpy(dtype=float))
     most = int(np.argmax(in_sigmas))
@@ -66,12 +66,12 @@ def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.Dat
     )
     if np.isfinite(shared["error_in_sigmas"]):
         sentences.append(_truth_sentence(estimates))
-    balanced = _estimate(estimates, BALANCED, INLIERS)
+    balanced = _estimate(estimates, BALANCED.name, INLIERS)
     sentences.append(
         "The balanced model, in which distance alone explains no error better, lies "
         f"{balanced['mahalanobis']:.1f} sigmas from the shared one: {_balanced_advice(float(balanced['mahalanobis']))}"
     )
-    robust = _estimate(estimates, ROBUST, ALL)
+    robust = _estimate(estimates, ROBUST.name, ALL)
     sentences.append(
         f"The robust model with all {int(robust['n_observations'])} observations in lies {robust['mahalanobis']:.1f} "
         f"sigmas (six degrees of freedom, median {chi.median(N_PARAMETERS):.1f}) from the shared model's accepted "
@@ -127,10 +127,10 @@ def _recommendation(published: float, shared: float) -> str:
 def _truth_sentence(estimates: pd.DataFrame) -> str:
     told = []
     for model, name, words in (
-        (PUBLISHED, INLIERS, "the published model after removal"),
-        (SHARED, INLIERS, "the shared model after removal"),
-        (BALANCED, INLIERS, "the balanced model after removal"),
-        (ROBUST, ALL, "the robust model with every fault left in"),
+        (PUBLISHED.name, INLIERS, "the published model after removal"),
+        (SHARED.name, INLIERS, "the shared model after removal"),
+        (BALANCED.name, INLIERS, "the balanced model after removal"),
+        (ROBUST.name, ALL, "the robust model with every fault left in"),
     ):
         row = _estimate(estimates, model, name)
         told.append(f"{1e3 * row['position_error_m']:.0f} mm, {row['error_in_sigmas']:.1f} sigmas by {words}")
@@ -178,7 +178,7 @@ def level_table(anchor: str, estimates: pd.DataFrame) -> TableOnPage:
             f"{row['effective_sample_size']:.0f}",
             f"{row['split_r_hat']:.3f}",
         ]
-        for _, row in estimates[estimates["noise_model"] != PUBLISHED].iterrows()
+        for _, row in estimates[estimates["noise_model"] != PUBLISHED.name].iterrows()
     ]
     heads = [
         "Noise model, observations",

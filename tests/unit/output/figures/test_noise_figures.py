@@ -3,9 +3,10 @@
 import numpy as np
 from matplotlib.colors import to_hex
 
+from linepose.estimation.noise_models import NOISE_MODELS, noise_model
 from linepose.output.figures.consistency import consistency, consistency_caption
 from linepose.output.figures.identifiability import identifiability, identifiability_caption
-from linepose.output.figures.noise_models import COLOURS, noise_models, noise_models_caption
+from linepose.output.figures.noise_models import noise_models, noise_models_caption
 from linepose.output.figures.style import RED
 from linepose.output.figures.weights import weights, weights_caption
 from unit import made_up
@@ -19,7 +20,7 @@ def test_each_model_has_its_marks_where_its_estimates_are():
     }
     np.testing.assert_allclose(places["published"], made_up.OPTIMUM[1] - 0.14)
     np.testing.assert_allclose(places["shared"], made_up.OPTIMUM[1])
-    assert {text.get_text() for text in figure.legends[0].get_texts()} == {*COLOURS, "by hand", "truth"}
+    assert {text.get_text() for text in figure.legends[0].get_texts()} == {*NOISE_MODELS, "by hand", "truth"}
     assert "0 mm shared" in noise_models_caption(made_up.noise_models())
 
 
@@ -27,8 +28,8 @@ def test_halves_are_steps_from_zero_to_one_and_pairs_are_marks_on_the_right_curv
     figure = consistency(made_up.consistency())
     lines = figure.axes[0].lines
     by_colour = {to_hex(line.get_color()): line for line in lines if len(line.get_xdata()) == 40}
-    assert set(by_colour) == {to_hex(COLOURS[name]) for name in ("published", "shared")}
-    published = by_colour[to_hex(COLOURS["published"])]
+    assert set(by_colour) == {to_hex(noise_model(name).colour) for name in ("published", "shared")}
+    published = by_colour[to_hex(noise_model("published").colour)]
     assert np.all(np.diff(published.get_xdata()) > 0)
     assert published.get_ydata()[-1] == 1.0
     marks = [line for line in lines if len(line.get_xdata()) == 1]

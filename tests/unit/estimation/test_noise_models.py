@@ -1,21 +1,47 @@
 """What holds for every noise model: names, defined answers to bad input, and that chi-square is near its freedom."""
 
-from typing import get_args
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 
-from linepose.errors import LineposeError
-from linepose.estimation.noise_models import NOISE_MODELS, likelihood_of
-from linepose.likelihood.names import NoiseModelName
+from linepose.config.study import Study
+from linepose.errors import InputError, LineposeError
+from linepose.estimation.noise_models import DEFAULT, NOISE_MODELS, NoiseModelName, likelihood_of, noise_model
 from linepose.likelihood.shared import SharedLikelihood
 from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey, without
 
+ROOT = Path(__file__).parents[3]
 MODELS = pytest.mark.parametrize("noise_model", NOISE_MODELS)
 
 
-def test_every_name_has_a_model():
-    assert set(get_args(NoiseModelName)) == set(NOISE_MODELS)
+def test_every_entry_carries_its_own_name_look_and_section():
+    assert all(key == one.name for key, one in NOISE_MODELS.items())
+    for look in ("meaning", "colour", "marker"):
+        assert len({getattr(one, look) for one in NOISE_MODELS.values()}) == len(NOISE_MODELS)
+    assert {one.section for one in NOISE_MODELS.values()} <= set(Study.model_fields)
+    assert NOISE_MODELS[DEFAULT.name] is DEFAULT
+
+
+def test_names_are_checked():
+    names = TypeAdapter(NoiseModelName)
+    assert [names.validate_python(name) for name in NOISE_MODELS] == list(NOISE_MODELS)
+    with pytest.raises(ValueError, match="one of published, "):
+        names.validate_python("balancd")
+    with pytest.raises(InputError) as error:
+        noise_model("balancd")
+    assert str(error.value).endswith("; did you mean balanced?")
+
+
+def test_a_model_is_named_in_one_place_only():
+    found = {
+        path.name
+        for path in [*ROOT.glob("src/**/*.py"), *ROOT.glob("scripts/*.py"), *ROOT.glob("workflow/**/*.smk")]
+        if "paper" not in path.parts and re.search('"(' + "|".join(NOISE_MODELS) + ')"', path.read_text())
+    }
+    assert found - {"result_schemas.py", "schemas.py", "regression.smk"} == {"noise_models.py"}
 
 
 @MODELS
