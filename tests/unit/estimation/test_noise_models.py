@@ -36,12 +36,13 @@ def test_names_are_checked():
 
 
 def test_a_model_is_named_in_one_place_only():
+    names = [name for name in NOISE_MODELS if name != "published"]  # also a column of the regression
     found = {
         path.name
         for path in [*ROOT.glob("src/**/*.py"), *ROOT.glob("scripts/*.py"), *ROOT.glob("workflow/**/*.smk")]
-        if "paper" not in path.parts and re.search('"(' + "|".join(NOISE_MODELS) + ')"', path.read_text())
+        if "paper" not in path.parts and re.search('"(' + "|".join(names) + ')"', path.read_text())
     }
-    assert found - {"result_schemas.py", "schemas.py", "regression.smk"} == {"noise_models.py"}
+    assert found == {"noise_models.py"}
 
 
 @MODELS
