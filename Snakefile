@@ -45,9 +45,14 @@ include: "workflow/rules/clock_offset.smk"
 include: "workflow/rules/experiments.smk"
 include: "workflow/rules/truth_error.smk"
 include: "workflow/rules/coverage.smk"
-include: "workflow/rules/regression.smk"
-include: "workflow/rules/published_tables.smk"
 include: "workflow/rules/figures.smk"
+
+
+if os.path.isdir("config/paper"):
+
+    include: "workflow/rules/paper.smk"
+
+
 include: "workflow/rules/report.smk"
 
 
@@ -56,4 +61,4 @@ rule all:
     input:
         [file for platform in PLATFORMS for file in results_of(platform)],
         "results/report.html",
-        "results/logs/regression.passed",
+        PAPER_RESULTS,

@@ -54,7 +54,7 @@ def main() -> None:
     if not surveys.FIELD_FOLDER.is_dir():
         sys.exit("benchmarks/experiments.py: no field data; run `make reproduce` once, or put it where README.md says")
     platform = load_platform(ROOT / "config" / "platforms", "ladybird")
-    inliers = read_yaml(ROOT / "config" / "published.yaml")["table3"]["ladybird"]["inliers_16"]
+    inliers = read_yaml(ROOT / "config" / "paper" / "published.yaml")["table3"]["ladybird"]["inliers_16"]
     pose, covariance = np.array(inliers["pose"]), np.diag(np.square(inliers["sigma"]))
     likelihood = PublishedLikelihood(surveys.field_survey().select(list(surveys.INLIERS)), platform.intrinsics())
     likelihood.log_likelihood(pose)

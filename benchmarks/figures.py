@@ -18,9 +18,6 @@ from linepose.output.figures.results import PlatformResults
 from linepose.output.report.assemble import platform_on_page
 from linepose.output.report.page import render_page
 from linepose.output.report.provenance import settings_text, versions
-from linepose.paper.report_sections import published_sections
-from linepose.pipeline.result_schemas import REGRESSION
-from linepose.tables import read_table
 
 ROOT = Path(__file__).resolve().parents[1]
 FIGURES_TARGET_S, REPORT_TARGET_S = 40.0, 5.0
@@ -39,8 +36,7 @@ def least_seconds(function: Callable[[], object], repetitions: int) -> tuple[flo
 def report(results: list[PlatformResults]) -> str:
     """The whole page."""
     platforms = [platform_on_page(one, one.platform.model_dump(mode="json")) for one in results]
-    published = published_sections(read_table(ROOT / "results" / "regression.parquet", REGRESSION), {})
-    return render_page(platforms, published, settings_text({}), versions())
+    return render_page(platforms, settings_text({}), versions())
 
 
 def main() -> None:

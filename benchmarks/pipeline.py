@@ -48,7 +48,9 @@ def main() -> None:
     if not surveys.FIELD_FOLDER.is_dir():
         sys.exit("benchmarks/pipeline.py: no field data; run `make reproduce` once, or put it where README.md says")
     platform = load_platform(ROOT / "config" / "platforms", "ladybird")
-    runtime = yaml.safe_load((ROOT / "config" / "published.yaml").read_text())["section4"]["runtime_min"]["ladybird"]
+    runtime = yaml.safe_load((ROOT / "config" / "paper" / "published.yaml").read_text())["section4"]["runtime_min"][
+        "ladybird"
+    ]
     survey, start = surveys.field_survey(), platform.start_pose()
     print(f"Optimisation and sampling; {numba.get_num_threads()} threads, wall time, least of a few repetitions\n")
     line("", *HEAD)

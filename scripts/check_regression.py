@@ -4,7 +4,7 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.paper.regression import check_passed
-    from linepose.pipeline.result_schemas import REGRESSION
+    from linepose.paper.row import REGRESSION
     from linepose.tables import read_table
 
     table = read_table(snakemake.input[0], REGRESSION)

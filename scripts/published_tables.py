@@ -6,18 +6,18 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
-    from linepose.experiments.schemas import PUBLISHED_NAVIGATION, PUBLISHED_POSES, REPEATABILITY, SUBSETS
-    from linepose.paper.tables import markdown, published_tables
+    from linepose.experiments.schemas import REPEATABILITY, SUBSETS
+    from linepose.paper.tables import PUBLISHED_NAVIGATION, PUBLISHED_POSES, markdown, published_tables
     from linepose.pipeline.result_schemas import NAVIGATION_SIGMA, POSE
     from linepose.tables import atomic_write, read_table, write_csv, write_table
 
     tables = published_tables(
-        snakemake.params.platform,
+        *snakemake.params.platform,
         read_yaml(Path(snakemake.input.published)),
-        read_table(snakemake.input.sigma, NAVIGATION_SIGMA),
-        read_table(snakemake.input.pose, POSE),
-        read_table(snakemake.input.subsets, SUBSETS),
-        read_table(snakemake.input.repeatability, REPEATABILITY),
+        read_table(snakemake.input.sigma[0], NAVIGATION_SIGMA),
+        read_table(snakemake.input.pose[0], POSE),
+        read_table(snakemake.input.subsets[0], SUBSETS),
+        read_table(snakemake.input.repeatability[0], REPEATABILITY),
     )
     folder = Path(snakemake.params.folder)
     for name, table in tables.items():

@@ -11,6 +11,7 @@ with stage(snakemake) as log:
     from linepose.experiments.schemas import BASIN_SUMMARY, REPEATABILITY, SUBSETS
     from linepose.paper.experiments_regression import BASIN_ROWS_OF, table_rows
     from linepose.paper.regression import PlatformResults, regression_table
+    from linepose.paper.row import REGRESSION
     from linepose.paper.simulated_regression import extraction_rows
     from linepose.pipeline.result_schemas import (
         DETECTION,
@@ -18,7 +19,6 @@ with stage(snakemake) as log:
         NAVIGATION_SIGMA,
         OUTLIERS,
         POSE,
-        REGRESSION,
         TRUTH_ERROR,
     )
     from linepose.tables import read_table, write_csv, write_table

@@ -10,9 +10,7 @@ with stage(snakemake) as log:
     from linepose.output.report.assemble import platform_on_page
     from linepose.output.report.page import render_page
     from linepose.output.report.provenance import settings_text, versions
-    from linepose.paper.report_sections import published_sections
-    from linepose.pipeline.result_schemas import REGRESSION
-    from linepose.tables import atomic_write, read_table
+    from linepose.tables import atomic_write
 
     platforms = []
     for name, values in snakemake.params.platforms.items():
@@ -26,12 +24,9 @@ with stage(snakemake) as log:
         log.info("%s: %s", name, platforms[-1].summary.verdict.sentence)
     page = render_page(
         platforms,
-        published_sections(
-            read_table(snakemake.input.regression, REGRESSION),
-            {Path(path).stem: read_table(path) for path in snakemake.input.tables},
-        ),
         settings_text(snakemake.params.study),
         versions(),
+        snakemake.params.further_pages,
     )
     with atomic_write(snakemake.output[0]) as path:
         path.write_text(page, encoding="utf-8")

@@ -153,8 +153,8 @@ def field_data() -> Path:
 
 @pytest.fixture(scope="session")
 def published() -> dict[str, Any]:
-    """config/published.yaml."""
-    return yaml.safe_load((CONFIG / "published.yaml").read_text())
+    """config/paper/published.yaml."""
+    return yaml.safe_load((CONFIG / "paper" / "published.yaml").read_text())
 
 
 @pytest.fixture(scope="session")

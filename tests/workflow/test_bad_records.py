@@ -63,7 +63,7 @@ def test_each_fault_is_one_line_and_spares_the_results(tmp_path):
         if plant:
             plant(sorted(data.glob("labelled_points/*.csv"))[1] if kind == VIEW else data / "nav_covs.csv")
         source = {"dataset": name} | ({} if plant else {"first": 50})
-        platforms[name] = {"like": "ladybird", "source": source, "published": None, "experiments": ALONE}
+        platforms[name] = {"like": "ladybird", "source": source, "experiments": ALONE}
         for result in ("points", "observations", "navigation_sigma", "outliers", "pose"):
             earlier = tmp_path / "results" / name / f"{result}.parquet"
             earlier.parent.mkdir(parents=True, exist_ok=True)

@@ -16,7 +16,15 @@ def test_every_result_is_made(finished):
     stages = ["points", "observations", "outliers", "optima", "pose", "diagnostics", "truth", "truth_error"]
     stages += ["extraction_accuracy", "detection", "detected_points"]
     assert {f"tiny/{stage}.parquet" for stage in stages} <= made
-    assert {"regression.parquet", "tiny/mcmc/all.parquet", "tiny/mcmc/inliers.parquet"} <= made
+    assert {"tiny/mcmc/all.parquet", "tiny/mcmc/inliers.parquet"} <= made
+
+
+def test_a_project_without_the_paper_has_none_of_it(finished):
+    assert "regression.parquet" not in finished.results()
+    assert not (finished.folder / "results" / "paper.html").exists()
+    report = (finished.folder / "results" / "report.html").read_text()
+    assert "shrimp" not in report.lower()
+    assert "paper.html" not in report
 
 
 def test_pose_is_that_of_the_simulation(finished):

@@ -27,7 +27,6 @@ PASSES = [
 ]
 TINY = {
     "like": "ladybird-sim",
-    "published": None,
     "experiments": {
         "basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]},
         "repeatability": None,
@@ -51,7 +50,7 @@ class Project:
 
     def configure(self, study: Mapping[str, Any], platforms: Mapping[str, Mapping[str, Any]]) -> None:
         config = self.folder / "config"
-        shutil.copytree(ROOT / "config", config, dirs_exist_ok=True)
+        shutil.copytree(ROOT / "config", config, dirs_exist_ok=True, ignore=shutil.ignore_patterns("paper"))
         (config / "config.yaml").write_text(yaml.safe_dump(dict(study)))
         for name, values in platforms.items():
             (config / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(dict(values)))

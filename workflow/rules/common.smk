@@ -35,6 +35,8 @@ if PROJECT.unavailable and workflow.is_main_process:
 
 STUDY = PROJECT.study
 PLATFORMS = [name for name in STUDY.platforms if name in PROJECT.platforms]
+PAPER_RESULTS = []  # what `rule all` makes of the paper, where config/paper exists
+FURTHER_PAGES = {}  # that the report links to: title and address
 
 
 wildcard_constraints:
@@ -45,7 +47,7 @@ def settings(wildcards):
     """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
     return PROJECT.platforms[wildcards.platform].model_dump(
         mode="json",
-        exclude={"description", "published", "experiments", "outline", "map_frame"},
+        exclude={"description", "experiments", "outline", "map_frame"},
     )
 
 

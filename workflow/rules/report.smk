@@ -3,12 +3,6 @@ rule report:
         results=reported,
         samples=expand("results/{platform}/mcmc", platform=PLATFORMS),
         figures=expand("results/{platform}/figures", platform=PLATFORMS),
-        regression="results/regression.parquet",
-        tables=(
-            expand("results/tables/table{number}.parquet", number=[2, 3, 4, 5])
-            if COMPARED
-            else []
-        ),
     output:
         report(
             "results/report.html",
@@ -25,6 +19,7 @@ rule report:
             name: PROJECT.platforms[name].model_dump(mode="json") for name in PLATFORMS
         },
         study=STUDY.model_dump(mode="json"),
+        further_pages=FURTHER_PAGES,
         code=script_digest("report"),
     script:
         "../../scripts/report.py"

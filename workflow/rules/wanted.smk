@@ -51,7 +51,7 @@ def settings_of_others(key):
     return lambda wildcards: {
         name: PROJECT.platforms[name].model_dump(
             mode="json",
-            exclude={"description", "published", "experiments", "map_frame"},
+            exclude={"description", "experiments", "map_frame"},
         )
         for name in others(key)(wildcards)
     }

@@ -30,14 +30,11 @@ def run(
     from linepose.pipeline.project_folder import find_project, load_platform_project
 
     root = find_project(project)
-    study = load_platform_project(name, root).study
+    load_platform_project(name, root)  # a fault of the configuration is told before anything runs
     snakefile = find_workflow(root)
-    settings = [f'platforms=["{name}"]']
-    if not (root / study.published).is_file():  # a project beside the clone regresses on the clone's numbers
-        settings.append(f"published={snakefile.parent / study.published}")
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(snakefile), "--directory", str(root)]
     command += ["--cores", str(cores or "all"), "--quiet", "host", "rules"]
-    command += ["--config", *settings, *(["--dry-run"] if dry_run else [])]
+    command += ["--config", f'platforms=["{name}"]', *(["--dry-run"] if dry_run else [])]
     finished = subprocess.run([*command, *(further or [])], check=False)
     if finished.returncode:
         typer.echo(

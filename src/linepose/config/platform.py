@@ -104,12 +104,6 @@ class Platform(Settings):
         description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start. "
         "none: the data decide alone, as in the paper.",
     )
-    published: Literal["ladybird", "ladybird_attitude", "ladybird_simulated", "shrimp_simulated"] | None = Field(
-        None,
-        description="The published numbers that the results are held against, if any; the noise model must be the "
-        "published one for that.",
-    )
-
     map_frame: MapFrameSection | None = Field(None, description="Where the survey lies on the Earth.")
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
     experiments: ExperimentsSection = Field(

@@ -43,7 +43,6 @@ class Study(Settings):
 
     platforms: list[str] = Field(min_length=1, description="Platforms to run: files of config/platforms.")
     platforms_folder: str = Field("config/platforms", description="Folder of the platform files.")
-    published: str = Field("config/published.yaml", description="File of the numbers to regress on.")
     data_folders: list[str] = Field(
         ["data", "../shared"], min_length=1, description="Folders searched for data sets, in this order."
     )

@@ -114,16 +114,6 @@ CONSISTENCY_SUMMARY: Final = pa.schema(
     ]
 )
 SENSITIVITY: Final = pa.schema([*texts("change"), *_estimate(), *_AGREEMENT[:2], *optional_floats("mahalanobis")])
-PUBLISHED_NAVIGATION: Final = pa.schema(
-    [*texts("platform", "quantity"), *floats("published", "obtained", "relative_difference")]
-)
-PUBLISHED_POSES: Final = pa.schema(
-    [
-        *texts("platform", "set", "parameter"),
-        *floats("published", "obtained", "difference_sigmas", "published_sigma", "obtained_sigma"),
-        *texts("note"),
-    ]
-)
 PRIOR: Final = pa.schema(
     [
         *texts("parameter"),

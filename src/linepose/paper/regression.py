@@ -204,7 +204,7 @@ def regression_table(
 ) -> pd.DataFrame:
     """One row a published number; `published_as` says which numbers each platform (by name) is held against.
 
-    Columns as in `result_schemas.REGRESSION`.
+    Columns as in `row.REGRESSION`.
     """
     rows = shrimp_hand_measured_rows(published)
     for name, platform in results.items():

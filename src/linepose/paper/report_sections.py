@@ -20,7 +20,7 @@ _SINGLE = "single checks"  # numbers that belong to no table of the paper
 def published_sections(regression: pd.DataFrame, tables: Mapping[str, pd.DataFrame]) -> list[SectionOnPage]:
     """What differs; then each platform's numbers, a table for each source; then the paper's tables with their sigmas.
 
-    `regression` as in `result_schemas.REGRESSION`, `tables` the published tables by name.
+    `regression` as in `row.REGRESSION`, `tables` the published tables by name.
     """
     parts = regression["quantity"].str.split(", ", n=2, expand=True).reindex(columns=range(3))
     single = parts[2].isna()

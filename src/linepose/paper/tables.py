@@ -5,10 +5,22 @@ from typing import Any, Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.survey.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
+from linepose.tables import floats, texts
 
+PUBLISHED_NAVIGATION: Final = pa.schema(
+    [*texts("platform", "quantity"), *floats("published", "obtained", "relative_difference")]
+)
+PUBLISHED_POSES: Final = pa.schema(
+    [
+        *texts("platform", "set", "parameter"),
+        *floats("published", "obtained", "difference_sigmas", "published_sigma", "obtained_sigma"),
+        *texts("note"),
+    ]
+)
 LOW_DIVERSITY_NOTE: Final = "the published pose has -log L 21.606, above the minimum obtained here, 21.163"
 _STAGES: Final = {"all_25": "all", "inliers_16": "inliers", "hand_measured": "hand_measured"}
 

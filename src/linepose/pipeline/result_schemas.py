@@ -7,7 +7,6 @@ from linepose.inputs.local_frame import MAP_FRAME as MAP_FRAME
 from linepose.inputs.observed_points import SCAN_POINTS as SCAN_POINTS
 from linepose.inputs.targets.measured import DETECTION as DETECTION
 from linepose.inputs.targets.measured import EXTRACTION_ACCURACY as EXTRACTION_ACCURACY
-from linepose.paper.row import REGRESSION as REGRESSION
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS as ESTIMATED_POINTS
 from linepose.pipeline.residual_tables import RESIDUALS as RESIDUALS
 from linepose.pipeline.stages import DIAGNOSTICS as DIAGNOSTICS

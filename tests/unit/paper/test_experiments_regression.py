@@ -11,7 +11,7 @@ from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.paper.experiments_regression import basin_rows, table_rows
 from linepose.paper.regression import check_passed
 
-PUBLISHED = read_yaml(Path(__file__).parents[3] / "config" / "published.yaml")
+PUBLISHED = read_yaml(Path(__file__).parents[3] / "config" / "paper" / "published.yaml")
 LOW = PUBLISHED["table4_low_verified"]
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from linepose.errors import EstimationError
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.paper.regression import PlatformResults, check_passed, regression_table, row
-from linepose.pipeline.result_schemas import REGRESSION
+from linepose.paper.regression import PlatformResults, check_passed, regression_table
+from linepose.paper.row import REGRESSION, row
 from linepose.survey.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
 
 REMOVED = [12, 8, 11, 10, 13, 9, 22, 23, 7]

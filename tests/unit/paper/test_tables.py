@@ -7,13 +7,12 @@ import pandas as pd
 import pytest
 
 from linepose.config.platform import read_yaml
-from linepose.experiments.schemas import PUBLISHED_NAVIGATION, PUBLISHED_POSES
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.paper.tables import markdown, published_tables
+from linepose.paper.tables import PUBLISHED_NAVIGATION, PUBLISHED_POSES, markdown, published_tables
 from linepose.survey.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
 from linepose.tables import read_table, write_table
 
-PUBLISHED = read_yaml(Path(__file__).parents[3] / "config" / "published.yaml")
+PUBLISHED = read_yaml(Path(__file__).parents[3] / "config" / "paper" / "published.yaml")
 
 
 def as_printed(entries: dict, names: dict, column: str, shift: float) -> pd.DataFrame:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from linepose.output.report.pictures import Picture, embedded
 from linepose.output.report.sections import SectionOnPage
@@ -59,13 +59,22 @@ def figures_on_page(name: str, folder: Path, index: pd.DataFrame) -> list[Figure
 
 def render_page(
     platforms: Sequence[PlatformOnPage],
-    published: Sequence[SectionOnPage],
     settings: str,
     package_versions: Mapping[str, str],
+    further_pages: Mapping[str, str] | None = None,
 ) -> str:
-    """The whole page."""
+    """The whole page; `further_pages` has the title and the address of pages that it links to."""
+    return (
+        page_environment()
+        .get_template("report.html.j2")
+        .render(platforms=platforms, settings=settings, versions=package_versions, further_pages=further_pages or {})
+    )
+
+
+def page_environment(*packages: str) -> Environment:
+    """Jinja2 as the report's templates need it; templates of further packages are found beside the report's."""
     environment = Environment(
-        loader=PackageLoader("linepose.output.report"),
+        loader=ChoiceLoader([PackageLoader(package) for package in ("linepose.output.report", *packages)]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -78,9 +87,7 @@ def render_page(
         "brief": _brief,
         "capital": lambda text: text[:1].upper() + text[1:],
     }
-    return environment.get_template("report.html.j2").render(
-        platforms=platforms, published=published, settings=settings, versions=package_versions
-    )
+    return environment
 
 
 def _number(value: float, of: PoseNumber) -> str:

@@ -6,10 +6,8 @@ from linepose.output.figures.results import PlatformResults
 from linepose.output.report.assemble import platform_on_page
 from linepose.output.report.page import render_page
 from linepose.output.report.provenance import settings_text, versions
-from linepose.paper.report_sections import published_sections
 from linepose.tables import write_table
 from unit import made_up
-from unit.output.report.made_up_page import REGRESSION
 
 
 @pytest.fixture(scope="session")
@@ -26,4 +24,4 @@ def page(results):
     write_table(render_figures(results, folder), folder / "index.parquet", FIGURES)
     one = platform_on_page(results, results.platform.model_dump(mode="json"))
     study = settings_text({"data_folders": ["data", "/home/someone/private/data"], "seed": 1})
-    return render_page([one], published_sections(REGRESSION, {"table3": made_up.pose()}), study, versions())
+    return render_page([one], study, versions(), {"Another page": "another.html"})

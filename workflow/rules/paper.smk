@@ -1,0 +1,143 @@
+# The published numbers beside those obtained. Included only where config/paper exists.
+from linepose.paper.declarations import load_declarations
+
+try:
+    DECLARED = load_declarations(Path("config/paper/regression.yaml")).platforms
+except LineposeError as error:
+    raise WorkflowError(str(error)) from None
+
+# The set of numbers that each platform of this run is held against.
+REGRESSED = {name: DECLARED[name] for name in PLATFORMS if name in DECLARED}
+REGRESSED_ON_TRUTH = {
+    name: PROJECT.platforms[name].camera.sigmas.model_dump(include={"u_px", "v_px"})
+    for name in REGRESSED
+    if name in PROJECT.simulated
+}
+FIELD = [name for name, numbers in REGRESSED.items() if numbers == "ladybird"]
+SWEPT = [
+    name
+    for name, numbers in REGRESSED.items()
+    if numbers in ("ladybird", "shrimp_simulated")
+]
+
+if set(DECLARED) <= set(STUDY.platforms):  # a run of some platforms reproduces nothing
+    PAPER_RESULTS += ["results/logs/regression.passed", "results/paper.html"]
+    FURTHER_PAGES["Published and obtained numbers"] = "paper.html"
+
+
+rule regression:
+    input:
+        published="config/paper/published.yaml",
+        subsets=expand("results/{platform}/subsets.parquet", platform=FIELD),
+        pairs=expand("results/{platform}/repeatability.parquet", platform=FIELD),
+        basin=expand("results/{platform}/basin_summary.parquet", platform=SWEPT),
+        pose=expand("results/{platform}/pose.parquet", platform=REGRESSED),
+        outliers=expand("results/{platform}/outliers.parquet", platform=REGRESSED),
+        sigma=expand("results/{platform}/navigation_sigma.parquet", platform=REGRESSED),
+        truth=expand("results/{platform}/truth.parquet", platform=REGRESSED_ON_TRUTH),
+        truth_error=expand(
+            "results/{platform}/truth_error.parquet", platform=REGRESSED_ON_TRUTH
+        ),
+        accuracy=expand(
+            "results/{platform}/extraction_accuracy.parquet",
+            platform=REGRESSED_ON_TRUTH,
+        ),
+        detection=expand(
+            "results/{platform}/detection.parquet", platform=REGRESSED_ON_TRUTH
+        ),
+    output:
+        parquet="results/regression.parquet",
+        csv=report(
+            "results/regression.csv",
+            caption="../report/regression.rst",
+            category="Report",
+            labels={"result": "published and obtained numbers"},
+        ),
+    log:
+        "results/logs/regression.log",
+    conda:
+        "../../environment.yml"
+    params:
+        published_as=REGRESSED,
+        compared=FIELD,
+        swept=SWEPT,
+        on_truth=REGRESSED_ON_TRUTH,
+        code=script_digest("regression"),
+    script:
+        "../../scripts/regression.py"
+
+
+rule check_regression:
+    input:
+        "results/regression.parquet",
+    output:
+        touch("results/logs/regression.passed"),
+    log:
+        "results/logs/check_regression.log",
+    conda:
+        "../../environment.yml"
+    params:
+        code=script_digest("check_regression"),
+    script:
+        "../../scripts/check_regression.py"
+
+
+rule published_tables:
+    input:
+        published="config/paper/published.yaml",
+        sigma=expand("results/{platform}/navigation_sigma.parquet", platform=FIELD[:1]),
+        pose=expand("results/{platform}/pose.parquet", platform=FIELD[:1]),
+        subsets=expand("results/{platform}/subsets.parquet", platform=FIELD[:1]),
+        repeatability=expand(
+            "results/{platform}/repeatability.parquet", platform=FIELD[:1]
+        ),
+    output:
+        expand(
+            "results/tables/table{number}.{kind}",
+            number=[2, 3, 4, 5],
+            kind=["parquet", "md"],
+        ),
+        *(
+            report(
+                f"results/tables/table{number}.csv",
+                caption="../report/table.rst",
+                category="Report",
+                labels={"result": f"Table {number}, published and obtained"},
+            )
+            for number in [2, 3, 4, 5]
+        ),
+    log:
+        "results/logs/published_tables.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platform=FIELD[:1],
+        folder=lambda wildcards, output: str(Path(output[0]).parent),
+        code=script_digest("published_tables"),
+    script:
+        "../../scripts/published_tables.py"
+
+
+rule paper_page:
+    input:
+        regression="results/regression.parquet",
+        tables=(
+            expand("results/tables/table{number}.parquet", number=[2, 3, 4, 5])
+            if FIELD
+            else []
+        ),
+    output:
+        report(
+            "results/paper.html",
+            caption="../report/regression.rst",
+            category="Report",
+            labels={"result": "published and obtained numbers, the page"},
+        ),
+    log:
+        "results/logs/paper_page.log",
+    conda:
+        "../../environment.yml"
+    params:
+        code=script_digest("paper_page"),
+    script:
+        "../../scripts/paper_page.py"
