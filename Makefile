@@ -43,7 +43,7 @@ readme-bench: $(STAMP) ## Measure speed and put the figures into docs/benchmarks
 	$(BIN)/python benchmarks/into_readme.py < build/bench.txt
 
 reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
-	$(BIN)/python -m linepose.config.reference
+	$(BIN)/python -m linepose.output.reference
 
 images: $(STAMP) ## Make the pictures of README and docs, from results/
 	$(BIN)/python -m linepose.output.report.pictures

@@ -13,9 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from linepose.config.platform import load_platform, read_yaml
-from linepose.experiments.basin import BasinGrid, Sweep
-from linepose.experiments.repeatability import random_splits
-from linepose.experiments.schemas import BASIN, SPLITS
+from linepose.experiments.basin import BASIN, BasinSettings, Sweep
+from linepose.experiments.splits import SPLITS, random_splits
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.pipeline.batches import batch_ranges, run_batches
 
@@ -59,7 +58,7 @@ def main() -> None:
     likelihood = PublishedLikelihood(surveys.field_survey().select(list(surveys.INLIERS)), platform.intrinsics())
     likelihood.log_likelihood(pose)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    share = kernel_share(Sweep(likelihood, pose, covariance, BasinGrid(n_distances=4, n_angles=5), 1), range(20))
+    share = kernel_share(Sweep(likelihood, pose, covariance, BasinSettings(n_distances=4, n_angles=5), 1), range(20))
     print(f"Experiments on the 16 inliers; {cores} cores, wall time")
     print(f"(the kernel has {100 * share:.0f} % of the basin's processor time with Powell's method, to reach: 80 %)\n")
     line("", "runs", "seconds", "ms each", "to reach, s")
@@ -77,7 +76,7 @@ def main() -> None:
         line("splits", 200, f"{seconds:.1f}", f"{5 * seconds:.0f}", TO_REACH_S["splits"])
         for optimiser in ("powell", "wide"):
             for size in GRIDS:
-                sweep = Sweep(likelihood, pose, covariance, BasinGrid(n_distances=size, n_angles=size), 1)
+                sweep = Sweep(likelihood, pose, covariance, BasinSettings(n_distances=size, n_angles=size), 1)
                 cells = batch_ranges(size**2, 15)
                 begun = time.perf_counter()
                 run_batches(

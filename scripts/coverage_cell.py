@@ -7,20 +7,20 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.coverage import CoverageSection, RegimeSection
     from linepose.config.platform import Platform
-    from linepose.experiments.coverage import Cell
-    from linepose.experiments.coverage_schemas import COVERAGE_SURVEYS
+    from linepose.experiments.coverage import COVERAGE_SURVEYS, Cell
     from linepose.pipeline.batches import batch_ranges, inputs_digest, remove_finished, run_batches
     from linepose.pipeline.progress import shown
     from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     study = CoverageSection.model_validate(snakemake.params.study)
+    regime = RegimeSection.model_validate(snakemake.params.regime)
     cell = Cell(
         *(snakemake.wildcards.platform, snakemake.wildcards.regime, snakemake.wildcards.noise_model),
         platform.intrinsics(),
         platform.simulation,
         platform.start_pose(),
-        RegimeSection.model_validate(snakemake.params.regime).levels(),
+        None if regime.from_prior else regime,
         study.seed,
         study.n_draws,
     )

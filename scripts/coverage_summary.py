@@ -6,8 +6,14 @@ import pandas as pd
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.experiments.coverage_schemas import COVERAGE, COVERAGE_SUMMARY, COVERAGE_SURVEYS
-    from linepose.experiments.coverage_summary import coverage_curve, coverage_summary, stated_probabilities
+    from linepose.experiments.coverage import COVERAGE_SURVEYS
+    from linepose.experiments.coverage_summary import (
+        COVERAGE,
+        COVERAGE_SUMMARY,
+        coverage_curve,
+        coverage_summary,
+        stated_probabilities,
+    )
     from linepose.experiments.coverage_table import coverage_table
     from linepose.output.figures import coverage as figures
     from linepose.output.figures.style import save

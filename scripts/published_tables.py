@@ -6,7 +6,8 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
-    from linepose.experiments.schemas import REPEATABILITY, SUBSETS
+    from linepose.experiments.repeatability import REPEATABILITY
+    from linepose.experiments.subsets import SUBSETS
     from linepose.paper.tables import PUBLISHED_NAVIGATION, PUBLISHED_POSES, markdown, published_tables
     from linepose.pipeline.result_schemas import NAVIGATION_SIGMA, POSE
     from linepose.tables import atomic_write, read_table, write_csv, write_table

@@ -8,7 +8,9 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
-    from linepose.experiments.schemas import BASIN_SUMMARY, REPEATABILITY, SUBSETS
+    from linepose.experiments.basin import BASIN_SUMMARY
+    from linepose.experiments.repeatability import REPEATABILITY
+    from linepose.experiments.subsets import SUBSETS
     from linepose.paper.experiments_regression import BASIN_ROWS_OF, table_rows
     from linepose.paper.regression import PlatformResults, regression_table
     from linepose.paper.row import REGRESSION

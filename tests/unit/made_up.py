@@ -7,12 +7,15 @@ import pandas as pd
 
 from linepose.config.platform import Platform
 from linepose.estimation.outliers import OUTLIERS
-from linepose.experiments import schemas
-from linepose.experiments.basin import START_COLUMNS, Region, summarise
-from linepose.experiments.clock_offset import CORRELATION_COLUMNS
-from linepose.experiments.consistency import summarise_consistency
-from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
-from linepose.experiments.noise_models import EXTRA_PARAMETERS
+from linepose.experiments.basin import BASIN, BASIN_SUMMARY, START_COLUMNS, Region, summarise
+from linepose.experiments.clock_offset import CLOCK_OFFSET, CORRELATION_COLUMNS
+from linepose.experiments.consistency import CONSISTENCY, CONSISTENCY_SUMMARY, summarise_consistency
+from linepose.experiments.leave_one_out import LEAVE_ONE_OUT
+from linepose.experiments.mapping import MAPPING, MAPPING_SUMMARY, PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
+from linepose.experiments.noise_models import EXTRA_PARAMETERS, IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
+from linepose.experiments.prior import PRIOR_TABLE
+from linepose.experiments.splits import SPLITS
+from linepose.experiments.uncertainty import UNCERTAINTY
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS, POINT_COVARIANCE_COLUMNS, RESIDUALS
 from linepose.pipeline.stages import DIAGNOSTICS, LAPLACE_SIGMA_COLUMNS, OPTIMA, POSE, SAMPLES
@@ -337,8 +340,8 @@ def clock_offset() -> pd.DataFrame:
 
 
 TABLES = {
-    "prior": (prior, schemas.PRIOR),
-    "clock_offset": (clock_offset, schemas.CLOCK_OFFSET),
+    "prior": (prior, PRIOR_TABLE),
+    "clock_offset": (clock_offset, CLOCK_OFFSET),
     "observations": (observations, OBSERVATIONS),
     "outliers": (outliers, OUTLIERS),
     "optima": (optima, OPTIMA),
@@ -347,18 +350,18 @@ TABLES = {
     "diagnostics": (diagnostics, DIAGNOSTICS),
     "residuals": (residuals, RESIDUALS),
     "estimated_points": (estimated_points, ESTIMATED_POINTS),
-    "mapping": (mapping, schemas.MAPPING),
-    "mapping_summary": (mapping_summary, schemas.MAPPING_SUMMARY),
-    "basin": (basin, schemas.BASIN),
-    "basin_summary": (basin_summary, schemas.BASIN_SUMMARY),
-    "splits": (splits, schemas.SPLITS),
-    "leave_one_out": (leave_one_out, schemas.LEAVE_ONE_OUT),
-    "uncertainty": (uncertainty, schemas.UNCERTAINTY),
-    "noise_models": (noise_models, schemas.NOISE_MODELS),
-    "identifiability": (identifiability, schemas.IDENTIFIABILITY),
-    "weights": (weights, schemas.WEIGHTS),
-    "consistency": (consistency, schemas.CONSISTENCY),
-    "consistency_summary": (consistency_summary, schemas.CONSISTENCY_SUMMARY),
+    "mapping": (mapping, MAPPING),
+    "mapping_summary": (mapping_summary, MAPPING_SUMMARY),
+    "basin": (basin, BASIN),
+    "basin_summary": (basin_summary, BASIN_SUMMARY),
+    "splits": (splits, SPLITS),
+    "leave_one_out": (leave_one_out, LEAVE_ONE_OUT),
+    "uncertainty": (uncertainty, UNCERTAINTY),
+    "noise_models": (noise_models, NOISE_MODELS),
+    "identifiability": (identifiability, IDENTIFIABILITY),
+    "weights": (weights, WEIGHTS),
+    "consistency": (consistency, CONSISTENCY),
+    "consistency_summary": (consistency_summary, CONSISTENCY_SUMMARY),
 }
 
 

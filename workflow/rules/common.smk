@@ -1,36 +1,29 @@
-import os
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 
 from linepose.config.project import load_project
-from linepose.survey.datasets import can_be_reached
 from linepose.errors import LineposeError
 from linepose.estimation.noise_models import NOISE_MODELS
+from linepose.experiments.registry import (
+    EXPERIMENTS,
+    compared_platforms,
+    experiment_settings,
+    wanted_experiments,
+)
 from linepose.pipeline import code_digest
 from linepose.tables import read_table
 
-
-def can_download(dataset):
-    """Whether the data set's server answers; asked once, because every job of a run reads this file anew."""
-    key = f"LINEPOSE_REACHED_{dataset.base_url}"
-    if key not in os.environ:
-        os.environ[key] = str(
-            int(can_be_reached(dataset.address(next(iter(dataset.sha256)))))
-        )
-    return os.environ[key] == "1"
-
-
 try:
-    PROJECT = load_project(config, Path(), can_download)
+    PROJECT = load_project(config, Path(), compared_platforms)
 except LineposeError as error:
     raise WorkflowError(str(error)) from None
 
 if PROJECT.unavailable and workflow.is_main_process:
     logger.warning(
-        f"data set {', '.join(PROJECT.unavailable)}: not in {', '.join(PROJECT.study.data_folders)} and not to be "
-        f"downloaded; only the other platforms run: {', '.join(PROJECT.platforms)}"
+        f"data set {', '.join(PROJECT.unavailable)}: not in {', '.join(PROJECT.study.data_folders)}, and `offline` "
+        f"forbids to download it; only the other platforms run: {', '.join(PROJECT.platforms)}"
     )
 
 STUDY = PROJECT.study
@@ -43,19 +36,41 @@ wildcard_constraints:
     platform="[A-Za-z0-9_-]+",
 
 
-def settings(wildcards):
-    """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
-    return PROJECT.platforms[wildcards.platform].model_dump(
+def settings_of(platform):
+    """What a platform's file says that numbers depend on."""
+    return PROJECT.platforms[platform].model_dump(
         mode="json",
         exclude={"description", "experiments", "outline", "map_frame"},
     )
 
 
-def experiment(key):
-    """What the platform's file says of one experiment, as a rule's parameter."""
-    return lambda wildcards: PROJECT.platforms[
-        wildcards.platform
-    ].experiments.model_dump(mode="json")[key]
+def settings(wildcards):
+    """What the platform's file says, as a rule's parameter: a change of it runs the rule again."""
+    return settings_of(wildcards.platform)
+
+
+def experiments_of(platform):
+    """What a platform's file says of its experiments, by key; None where one is left out."""
+    return experiment_settings(PROJECT.platforms[platform])
+
+
+def experiment_results(platform):
+    """The results of all experiments that are run for a platform."""
+    return [
+        f"results/{platform}/{name}.parquet"
+        for one in wanted_experiments(PROJECT.platforms[platform])
+        for name in one.outputs
+    ]
+
+
+def results_of(platform):
+    """Every result of a platform that people read."""
+    names = ["pose", "diagnostics"]
+    if platform in PROJECT.simulated:
+        names.append("detection")
+    return experiment_results(platform) + [
+        f"results/{platform}/{name}.parquet" for name in names
+    ]
 
 
 def readable(wildcards):
@@ -83,7 +98,7 @@ def sampling(wildcards):
 
 def section(key):
     """What config.yaml says under this key, as a rule's parameter."""
-    return getattr(STUDY, key).model_dump(mode="json")
+    return STUDY.model_dump(mode="json", include={key})[key]
 
 
 def script_digest(name, *modules):

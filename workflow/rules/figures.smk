@@ -1,3 +1,20 @@
+def figure_labels(wildcards):
+    """A figure's title and its number in the paper, for Snakemake's report."""
+    index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
+    entry = index.set_index("figure").loc[wildcards.figure]
+    return {"figure": entry["title"], "paper": entry["paper_figure"] or "beyond it"}
+
+
+def drawn_from(wildcards):
+    """The results that a platform's figures are drawn from, beside those that every platform has."""
+    detected = (
+        [f"results/{wildcards.platform}/detected_points.parquet"]
+        if wildcards.platform in PROJECT.simulated
+        else []
+    )
+    return experiment_results(wildcards.platform) + detected
+
+
 rule figures:
     input:
         observations="results/{platform}/observations.parquet",
@@ -5,7 +22,6 @@ rule figures:
         samples="results/{platform}/mcmc",
         pose="results/{platform}/pose.parquet",
         diagnostics="results/{platform}/diagnostics.parquet",
-        uncertainty="results/{platform}/uncertainty.parquet",
         residuals="results/{platform}/residuals.parquet",
         points="results/{platform}/estimated_points.parquet",
         experiments=drawn_from,

@@ -1,3 +1,11 @@
+def reported(_):
+    """Every result that the report's summaries and sections rest on."""
+    always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
+    return [
+        file for platform in PLATFORMS for file in experiment_results(platform)
+    ] + expand("results/{platform}/{name}.parquet", platform=PLATFORMS, name=always)
+
+
 rule report:
     input:
         results=reported,

@@ -13,8 +13,8 @@ from linepose.arrays import Floats
 from linepose.check.information import published_covariance
 from linepose.check.replay import crossing
 from linepose.errors import EstimationError
-from linepose.experiments.subsets import body_angles_rad
 from linepose.geometry.camera import Camera
+from linepose.survey.body_angles import body_angles_rad
 from linepose.survey.observations import Survey
 
 _ADDED: Final = 4

@@ -25,6 +25,7 @@ from linepose.config.project import Project
 from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.config.study import check_study
 from linepose.errors import InputError, LineposeError
+from linepose.experiments.registry import compared_platforms, experiment_faults
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.number_files import read_numbers
 from linepose.pipeline.load import read_log, read_reported, with_navigation
@@ -82,7 +83,7 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
     settings = load_platform(root / study.platforms_folder, platform)
     findings += camera_findings(settings.intrinsics())
     try:
-        loaded = load_platform_project(platform, root, lambda _: False)
+        loaded = load_platform_project(platform, root, compared_platforms, offline=True)
     except InputError as fault:
         return CheckReport(platform, (*findings, of_fault("data set", fault)))
     more, observations = recorded_findings(loaded, platform, root)
@@ -99,7 +100,10 @@ def configuration_findings(platform: str, root: Path) -> list[Finding]:
         study = check_study(read_yaml(root / CONFIG) | {"platforms": [platform]}, str(root / CONFIG))
     except InputError as fault:
         return [of_fault("configuration", fault)]
-    faults = platform_faults(root / study.platforms_folder, platform)
+    folder = root / study.platforms_folder
+    faults = platform_faults(folder, platform) or experiment_faults(
+        load_platform(folder, platform), str(folder / f"{platform}.yaml")
+    )
     if faults:
         return [of_fault("platform file", fault) for fault in faults]
     return [ok("platform file", f"{study.platforms_folder}/{platform}.yaml has every key it needs")]

@@ -2,28 +2,16 @@
 
 from typing import Annotated, Self
 
-from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, model_validator
+from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
 from linepose.estimation.noise_models import MEANINGS, NOISE_MODELS, NoiseModelName
-from linepose.experiments.coverage_survey import NoiseLevels
 from linepose.settings import Settings
+from linepose.simulation.noise_levels import NoiseLevels
 
-Level = Annotated[float, Field(ge=0)]
 
-
-class RegimeSection(Settings):
+class RegimeSection(NoiseLevels):
     """The true noise of surveys, in units of what is reported, and the noise models that estimate from them."""
 
-    shared_level: Level = Field(0.0, description="Navigation error constant in a view (reported sigmas).")
-    white_level: Level = Field(0.0, description="Navigation error independent from point to point (reported sigmas).")
-    correlated_level: Level = Field(0.0, description="Gauss-Markov navigation error (reported sigmas).")
-    correlation_time_s: PositiveFloat = Field(60.0, description="Correlation time of the Gauss-Markov error (s).")
-    pixel_level: Level | None = Field(
-        None, description="Noise of points (the camera's sigmas); as in the platform's extraction if null."
-    )
-    intrinsics_level: Level = Field(
-        1.0, description="Deviation of the true principal point and focal length (the camera's sigmas)."
-    )
     from_prior: bool = Field(
         False, description="Draw shared, white and pixel level for each survey from the model's priors instead."
     )
@@ -38,21 +26,6 @@ class RegimeSection(Settings):
         if self.from_prior and (self.shared_level or self.white_level or self.correlated_level or self.pixel_level):
             raise ValueError("levels, or from_prior, not both")
         return self
-
-    def levels(self) -> NoiseLevels | None:
-        """As the library takes it; None where they are drawn."""
-        return (
-            None
-            if self.from_prior
-            else NoiseLevels(
-                self.shared_level,
-                self.white_level,
-                self.correlated_level,
-                self.correlation_time_s,
-                self.pixel_level,
-                self.intrinsics_level,
-            )
-        )
 
 
 class CoverageSection(Settings):

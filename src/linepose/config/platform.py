@@ -17,7 +17,6 @@ from pydantic import (
 )
 
 from linepose.arrays import Floats
-from linepose.config.experiments import ExperimentsSection
 from linepose.config.map_frame import MapFrameSection
 from linepose.config.outline import OutlineSection
 from linepose.config.source import LabelledViewsSection, ScansSection
@@ -106,23 +105,12 @@ class Platform(Settings):
     )
     map_frame: MapFrameSection | None = Field(None, description="Where the survey lies on the Earth.")
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
-    experiments: ExperimentsSection = Field(
-        ExperimentsSection(), description="Experiments on the accepted observations."
-    )
+    experiments: dict[str, Any] = Field({}, description="Experiments on the accepted observations.")
 
     @model_validator(mode="after")
     def _has_one_origin(self) -> "Platform":
         if (self.simulation is None) == (self.source.dataset is None):
             raise ValueError("either source.dataset, or a simulation with a source of kind scans")
-        return self
-
-    @model_validator(mode="after")
-    def _has_a_log_for_a_clock_offset(self) -> "Platform":
-        if self.experiments.clock_offset is not None and self.source.kind != "scans":
-            raise ValueError(
-                "no experiments.clock_offset here: labelled views hold body poses and no log; a source of kind scans "
-                "has one"
-            )
         return self
 
     def intrinsics(self) -> Camera:

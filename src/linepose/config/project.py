@@ -1,6 +1,6 @@
 """All that a run is configured by: the study, its platforms, its data sets and the folders they are in."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,8 @@ class Project:
 
     `platforms` has those of the study first, then those that only an experiment compares with.
     A data set that `datasets` does not list has no sums: it is the user's own, found in a data folder.
-    `unavailable` names the data sets that can neither be found nor downloaded; their platforms are not in `platforms`.
+    `unavailable` names the data sets that are in no data folder and, as the study is offline, are not downloaded; their
+    platforms are not in `platforms`.
     """
 
     study: Study
@@ -62,19 +63,27 @@ class Project:
         return f"results/{platform}/simulated" if dataset is None else f"results/datasets/{dataset}.csv"
 
 
-def load_project(
-    values: dict[str, Any], root: Path, can_download: Callable[[DatasetSection], bool] = lambda _: True
-) -> Project:
+Compared = Callable[[Platform, str], Sequence[str]]
+
+
+def compared_with_none(platform: Platform, file: str) -> Sequence[str]:  # noqa: ARG001
+    """For a project that is not asked for its experiments."""
+    return ()
+
+
+def load_project(values: dict[str, Any], root: Path, compared: Compared = compared_with_none) -> Project:
     """The project that config.yaml's values and the files they name describe.
 
-    A data set that is nowhere and that `can_download` denies is unavailable: its platforms are left out, as long as
-    others remain. Raises InputError for the first key, file or name that is wrong.
+    `compared` checks the experiments of a platform of which the file is named too, and names the platforms that they
+    compare it with: `linepose.experiments.registry.compared_platforms`. In an offline study, a data set that is in no
+    data folder is unavailable: its platforms are left out, as long as others remain. Raises InputError for the first
+    key, file or name that is wrong.
     """
     study = check_study(values)
     platforms = {name: load_platform(root / study.platforms_folder, name) for name in study.platforms}
-    for platform in list(platforms.values()):
-        for name in platform.experiments.other_platforms():
-            platforms.setdefault(name, load_platform(root / study.platforms_folder, name))
+    for name, platform in list(platforms.items()):
+        for other in compared(platform, str(root / study.platforms_folder / f"{name}.yaml")):
+            platforms.setdefault(other, load_platform(root / study.platforms_folder, other))
     for name in study.coverage.platforms:
         if name not in study.platforms or platforms[name].simulation is None:
             raise InputError(
@@ -101,7 +110,7 @@ def load_project(
                 f"put them in {searched[0] / dataset}",
             )
         folders[dataset] = found or searched[0] / dataset
-        if found is None and not can_download(datasets[dataset]):
+        if found is None and study.offline:
             absent.append(dataset)
     remaining = {name: platform for name, platform in platforms.items() if platform.source.dataset not in absent}
     if absent and remaining:

@@ -47,6 +47,11 @@ class Study(Settings):
         ["data", "../shared"], min_length=1, description="Folders searched for data sets, in this order."
     )
     datasets: dict[str, str] = Field(default_factory=dict, description="Data sets, name to file of their sums.")
+    offline: bool = Field(
+        False,
+        description="Leave out, with a warning, platforms whose data set is in no data folder, instead of downloading "
+        "it.",
+    )
     seed: NonNegativeInt = Field(2017, description="Seed from which every random number is derived.")
     search: Search = Field(Search(), description="Optimisation.")
     outliers: OutlierSettings = Field(OutlierSettings(), description="Outlier removal.")

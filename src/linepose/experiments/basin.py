@@ -4,42 +4,78 @@ A uniform grid over distance and angle from the reference pose; in each cell one
 random direction and the cell's angle about a random axis.
 """
 
+import logging
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Final, Literal
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
+from pydantic import Field, PositiveFloat, PositiveInt
 from scipy.stats import binomtest
 
 from linepose.arrays import Floats
-from linepose.errors import InputError
 from linepose.estimation.optimise import Search
 from linepose.estimation.optimisers import optimiser
+from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.inputs import Inputs, log_rows
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
 from linepose.likelihood.base import Likelihood
+from linepose.pipeline.batches import batch_ranges
+from linepose.settings import Settings
+from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
+_logger = logging.getLogger(__name__)
+OptimiserName = Literal["powell", "powell_in_front", "wide"]
 START_COLUMNS = tuple(f"start_{name}" for name in POSE_COLUMNS)
 
+BASIN: Final = pa.schema(
+    [
+        *texts("optimiser"),
+        *whole_numbers("cell"),
+        *floats("distance_m", "angle_rad", *START_COLUMNS, *POSE_COLUMNS, "neg_log_likelihood"),
+        *whole_numbers("n_evaluations"),
+        *floats("mahalanobis"),
+        *flags("success"),
+    ]
+)
+BASIN_SUMMARY: Final = pa.schema(
+    [
+        *texts("optimiser", "region"),
+        *whole_numbers("n_starts", "n_successes"),
+        *optional_floats("success_rate", "success_rate_low", "success_rate_high", "median_n_evaluations"),
+    ]
+)
 
-@dataclass(frozen=True)
-class BasinGrid:
-    """Cells of equal size over distance and angle; cell `i * n_angles + j` is the i-th in distance, j-th in angle."""
 
-    maximum_distance_m: float = 2.0
-    maximum_angle_rad: float = float(np.pi / 3)
-    n_distances: int = 30
-    n_angles: int = 30
+class BasinSettings(Settings):
+    """From how far away the optimum is found. One start in each cell of a grid over distance and angle.
 
-    def __post_init__(self) -> None:
-        for key, size in (("n_distances", self.n_distances), ("n_angles", self.n_angles)):
-            if size < 1:
-                raise InputError(f"basin.{key}", f"{size}", "at least one cell", "raise it")
-        for key, extent in (("maximum_distance", self.maximum_distance_m), ("maximum_angle", self.maximum_angle_rad)):
-            if not extent > 0:
-                raise InputError(f"basin.{key}", f"{extent:g}", "a number above zero", "raise it")
+    Cell `i * n_angles + j` is the i-th in distance and the j-th in angle.
+    """
+
+    maximum_distance_m: PositiveFloat = Field(2.0, description="The grid reaches this far from the optimum (m).")
+    maximum_angle_deg: float = Field(60.0, gt=0, le=180, description="The grid reaches this angle from it (deg).")
+    n_distances: PositiveInt = Field(30, description="Cells over the distance.")
+    n_angles: PositiveInt = Field(30, description="Cells over the angle.")
+    optimisers: list[OptimiserName] = Field(
+        ["powell", "wide"],
+        min_length=1,
+        description="Searches to compare on the same starts. powell: on the paper's equations, where points behind the "
+        "camera count as if in front, and with rotation components within +- pi. powell_in_front: as the poses are "
+        "found, such points excluded, all ranges centred on the start. wide: rotations first, then least squares, then "
+        "Powell.",
+    )
+    success_threshold: PositiveFloat = Field(
+        0.1, description="A success ends nearer to the optimum than this (sigmas)."
+    )
+    region_distance_m: PositiveFloat = Field(0.5, description="The claimed region is a triangle with this leg (m) ...")
+    region_angle_deg: PositiveFloat = Field(20.0, description="... and this one (deg).")
+    batch_size: PositiveInt = Field(15, description="Starts between two savings; no result depends on it.")
 
     @property
     def n_cells(self) -> int:
@@ -51,16 +87,23 @@ class BasinGrid:
         i, j = divmod(cell, self.n_angles)
         return (
             (i + 0.5) * self.maximum_distance_m / self.n_distances,
-            (j + 0.5) * self.maximum_angle_rad / self.n_angles,
+            (j + 0.5) * float(np.deg2rad(self.maximum_angle_deg)) / self.n_angles,
         )
+
+    def region(self) -> "Region":
+        """The triangle that is claimed."""
+        return Region(self.region_distance_m, float(np.deg2rad(self.region_angle_deg)))
+
+
+SECTION: Final = Section("basin", BasinSettings, BasinSettings(), "Basin of attraction.")
 
 
 @dataclass(frozen=True)
 class Region:
     """The triangle that the paper claims: `distance / distance_m + angle / angle_rad < 1`."""
 
-    distance_m: float = 0.5
-    angle_rad: float = float(np.radians(20.0))
+    distance_m: float
+    angle_rad: float
 
     def holds(self, distance_m: ArrayLike, angle_rad: ArrayLike) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
         """Whether starts at these distances and angles lie inside; (...) each to (...)."""
@@ -68,7 +111,7 @@ class Region:
         return np.asarray(share < 1)
 
 
-def start_pose(grid: BasinGrid, reference: ArrayLike, seed: int, cell: int) -> Floats:
+def start_pose(grid: BasinSettings, reference: ArrayLike, seed: int, cell: int) -> Floats:
     """The start (6,) of one cell around a reference pose (6,): a function of the seed and the cell alone."""
     pose = np.asarray(reference, dtype=float)[:N_PARAMETERS]
     distance_m, angle_rad = grid.offset(cell)
@@ -88,7 +131,7 @@ class Sweep:
     likelihood: Likelihood
     reference: Floats
     covariance: Floats
-    grid: BasinGrid
+    grid: BasinSettings
     seed: int
     search: Search = field(default_factory=Search)
     threshold: float = 0.1
@@ -146,3 +189,36 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> tu
         return (float("nan"), float("nan"))
     interval = binomtest(successes, trials).proportion_ci(confidence, method="wilson")
     return (float(interval.low), float(interval.high))
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    settings, reference = inputs.required(SECTION), inputs.reference
+    sweep = Sweep(
+        inputs.data.accepted,
+        reference.pose,
+        reference.covariance,
+        settings,
+        inputs.seed,
+        inputs.search,
+        settings.success_threshold,
+    )
+    ranges = batch_ranges(settings.n_cells, settings.batch_size)
+    parts = {f"{name}-{part}": (name, cells) for name in settings.optimisers for part, cells in ranges.items()}
+    table = inputs.in_batches(lambda part: sweep.rows(*parts[part]), list(parts), BASIN)
+    of_each = table.groupby("optimiser", sort=False)
+    summary = pd.concat(
+        [summarise(rows, settings.region()).assign(optimiser=name) for name, rows in of_each], ignore_index=True
+    )
+    log_rows(_logger, "%s, %s: %d of %d starts succeed", summary, ("optimiser", "region", "n_successes", "n_starts"))
+    return {"basin": table, "basin_summary": summary}
+
+
+EXPERIMENT: Final = Experiment(
+    name="basin",
+    title="Basin of attraction",
+    outputs={"basin": BASIN, "basin_summary": BASIN_SUMMARY},
+    run=_run,
+    section=SECTION,
+    study=("seed", "search"),
+    cores=None,
+)

@@ -10,19 +10,27 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
+from pydantic import Field, PositiveFloat
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
 from linepose.estimation.identifiability import TURN_NAMES, in_body_axes
+from linepose.estimation.noise_models import likelihood_factory
 from linepose.estimation.optimise import Search, laplace_covariance, optimise
-from linepose.estimation.sampling import SamplingSettings, sample
+from linepose.estimation.sampling import IndependenceSettings, SamplingSettings, sample, stage_seed
 from linepose.experiments.estimate import observation_list
+from linepose.experiments.experiment import ESTIMATE, Experiment, Section
+from linepose.experiments.inputs import Inputs
 from linepose.experiments.jackknife import jackknife_sigma
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.likelihood.clock_offset import ClockOffsetLikelihood
-from linepose.pipeline.stages import sample_table
+from linepose.likelihood.clock_offset import ClockOffsetLikelihood, with_clock_offset
+from linepose.pipeline.load import read_log
+from linepose.pipeline.stages import SAMPLES, sample_table
+from linepose.settings import Settings
+from linepose.tables import flags, floats, optional_floats, texts, whole_numbers, with_parameters
 
 _logger = logging.getLogger(__name__)
 
@@ -42,6 +50,34 @@ _WORDS: Final = {
     "yaw": "yaw",
 }
 
+CLOCK_OFFSET: Final = pa.schema(
+    [
+        *whole_numbers("n_observations"),
+        *texts("observations"),
+        *floats("offset_s", "sigma_s", "sampled_sigma_s"),
+        *optional_floats("laplace_sigma_s", "jackknife_sigma_s"),
+        *floats("maximum_s", "shrinkage", "correlation_pose", *CORRELATION_COLUMNS),
+        *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
+        *floats(*(f"{name}_without" for name in (*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood")), "mahalanobis"),
+        *flags("identifiable"),
+        *texts("verdict", "advice"),
+    ]
+)
+
+
+class ClockOffsetSettings(Settings):
+    """The camera's clock against the navigation's, one parameter beside the pose; needs a raw navigation log."""
+
+    maximum_s: PositiveFloat = Field(0.1, description="The clocks differ by no more than this (s).")
+
+
+SECTION: Final = Section(
+    "clock_offset",
+    ClockOffsetSettings,
+    None,
+    "Clock offset, of platforms with scans and a raw navigation log only.",
+)
+
 
 @dataclass(frozen=True)
 class PoseWithoutOffset:
@@ -58,13 +94,13 @@ def estimate_clock_offset(
     start: ArrayLike,
     seed: int,
     search: Search | None = None,
-    settings: SamplingSettings | None = None,
+    settings: SamplingSettings | IndependenceSettings | None = None,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The offset and the pose together from a start pose (6,): a table of one row, and the samples behind its sigmas.
 
     `correlation_pose` is that of the curvature, which no limit of the offset hides; 1 where the curvature leaves a
     direction open. The offset's sigma is the larger of the samples' and of leaving out observations. Columns as in
-    `schemas.CLOCK_OFFSET`; a sigma from the curvature is NaN where the data leave a direction open.
+    `CLOCK_OFFSET`; a sigma from the curvature is NaN where the data leave a direction open.
     """
     optimum = optimise(likelihood, start, search)
     laplace_sigma, view_sigma, with_pose = float("nan"), float("nan"), 1.0
@@ -202,3 +238,33 @@ def _pose(suffix: str, pose: Floats, sigma: Floats, neg_log_likelihood: float) -
         **dict(zip(columns, map(float, (*pose, *sigma)), strict=True)),
         f"neg_log_likelihood{suffix}": neg_log_likelihood,
     }
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    platform, accepted, reference = inputs.platform, inputs.data.accepted, inputs.reference
+    without = PoseWithoutOffset(reference.pose, reference.covariance, -accepted.log_likelihood(reference.parameters))
+    survey, start = accepted.survey, platform.start_pose()
+    model = likelihood_factory(platform.noise_model, survey, platform.intrinsics(), start, platform.pose_prior())
+    raw_log = read_log(platform, inputs.folder)
+    likelihood = with_clock_offset(survey, raw_log, inputs.required(SECTION).maximum_s, model)
+    seed = stage_seed(inputs.seed, survey.n_observations, 1)
+    table, samples = estimate_clock_offset(likelihood, without, start, seed, inputs.search, inputs.sampling())
+    _logger.info("%s", table["verdict"].iloc[0])
+    return {"clock_offset": table, "clock_offset_samples": samples}
+
+
+def _samples_schema(table: pd.DataFrame) -> pa.Schema:
+    return with_parameters(SAMPLES, [name for name in table.columns if name not in SAMPLES.names])
+
+
+EXPERIMENT: Final = Experiment(
+    name="clock_offset",
+    title="Clock offset",
+    outputs={"clock_offset": CLOCK_OFFSET, "clock_offset_samples": _samples_schema},
+    run=_run,
+    section=SECTION,
+    needs=ESTIMATE,
+    study=("seed", "search", "own_sampling"),
+    log=True,
+    cores=2,
+)

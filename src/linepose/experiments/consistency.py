@@ -4,6 +4,7 @@ Two independent estimates of one pose differ by a Mahalanobis distance whose squ
 degrees of freedom, if the covariances are right; if they are too small, it is larger.
 """
 
+import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -11,6 +12,7 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
 from scipy.stats import chi, kstest
 
@@ -18,16 +20,42 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.estimation.noise_models import PUBLISHED, SHARED, likelihood_of
 from linepose.estimation.optimise import Search
-from linepose.experiments.estimate import Estimate, estimate_nearby
-from linepose.experiments.repeatability import consistency, split_numbers
+from linepose.experiments.agreement import AGREEMENT, pair_row
+from linepose.experiments.estimate import Estimate, estimate_fields, estimate_nearby
+from linepose.experiments.experiment import Experiment
+from linepose.experiments.inputs import Inputs, log_rows
+from linepose.experiments.noise_models import INLIERS, NOISE_MODELS, SECTION
+from linepose.experiments.repeatability import SECTION as REPEATABILITY_SECTION
+from linepose.experiments.repeatability import named_pair
+from linepose.experiments.splits import split_numbers
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.likelihood.base import Likelihood
 from linepose.pipeline.batches import batch_ranges
 from linepose.survey.observations import Survey
+from linepose.tables import optional_floats, texts, whole_numbers
 
+_logger = logging.getLogger(__name__)
 NAMED_SUBSETS: Final = "the two named subsets"
 MINIMUM_OBSERVATIONS: Final = 4
+
+CONSISTENCY: Final = pa.schema(
+    [
+        *texts("noise_model", "comparison"),
+        *whole_numbers("split"),
+        *estimate_fields("_1"),
+        *estimate_fields("_2"),
+        *AGREEMENT,
+    ]
+)
+CONSISTENCY_SUMMARY: Final = pa.schema(
+    [
+        *texts("noise_model", "comparison"),
+        *whole_numbers("n_splits", "n_open"),
+        *optional_floats("median_distance", "sigma_factor", "share_beyond_68", "share_beyond_95"),
+        *optional_floats("kolmogorov", "largest_distance"),
+    ]
+)
 
 
 @dataclass(frozen=True)
@@ -110,9 +138,8 @@ def _check_halves(name: str, n_observations: int) -> None:
 
 
 def _compared(noise_model: str, comparison: str, split: int, first: Estimate, second: Estimate) -> dict[str, object]:
-    columns = {f"{key}_{k}": value for k, one in enumerate((first, second), 1) for key, value in one.row().items()}
-    row = {"noise_model": noise_model, "comparison": comparison, "split": split, **columns}
-    return row | consistency(first, second)
+    row = {"noise_model": noise_model, "comparison": comparison, "split": split}
+    return row | pair_row(first, second)
 
 
 def groups_of(
@@ -139,7 +166,7 @@ def summarise_consistency(table: pd.DataFrame) -> pd.DataFrame:
 
     `sigma_factor` is what the sigmas would have to grow by for the median to fit; `kolmogorov` the largest gap between
     the distances' cumulative distribution and chi's with six degrees of freedom. Splits that leave a direction of the
-    pose open count as `n_open` and in nothing else. Columns as in `schemas.CONSISTENCY_SUMMARY`.
+    pose open count as `n_open` and in nothing else. Columns as in `CONSISTENCY_SUMMARY`.
     """
     rows = []
     for (noise_model, name), part in table.groupby(["noise_model", "comparison"], sort=False):
@@ -165,3 +192,42 @@ def summarise_consistency(table: pd.DataFrame) -> pd.DataFrame:
 
 def _beyond(distance: Floats, content: float) -> float:
     return float(np.mean(distance > chi.ppf(content, N_PARAMETERS))) if distance.size else float("nan")
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    platform, data, settings = inputs.platform, inputs.data, inputs.required(SECTION)
+    surveys = {inputs.name: data.accepted.survey}
+    surveys |= {name: other.accepted.survey for name, other in inputs.other_data.items()}
+    sets = {name: name for name in surveys} | {inputs.name: INLIERS}
+    comparisons = Comparisons(
+        groups_of(surveys, sets, platform.intrinsics(), inputs.table("noise_models", NOISE_MODELS)),
+        list(named_pair(data, inputs.settings(REPEATABILITY_SECTION), inputs.file).values()),
+        platform.start_pose(),
+        inputs.seed,
+        inputs.search,
+    )
+    parts = comparisons.parts(settings.n_splits, settings.batch_size)
+    table = inputs.in_batches(lambda name: parts[name](), list(parts), CONSISTENCY)
+    summary = summarise_consistency(table)
+    log_rows(
+        _logger,
+        "%s, %s: median %.2f sigmas, sigmas to be multiplied by %.2f",
+        summary,
+        ("noise_model", "comparison", "median_distance", "sigma_factor"),
+    )
+    return {"consistency": table, "consistency_summary": summary}
+
+
+EXPERIMENT: Final = Experiment(
+    name="consistency",
+    title="Whether disjoint observations agree",
+    outputs={"consistency": CONSISTENCY, "consistency_summary": CONSISTENCY_SUMMARY},
+    run=_run,
+    section=SECTION,
+    reads=(REPEATABILITY_SECTION,),
+    needs=("observations", "outliers", "noise_models"),
+    study=("seed", "search"),
+    compares=True,
+    every_noise_model=True,
+    cores=None,
+)

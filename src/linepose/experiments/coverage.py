@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from scipy.stats import chi2
 
 from linepose.arrays import Floats
@@ -21,20 +22,44 @@ from linepose.errors import EstimationError, InputError
 from linepose.estimation.importance import WeightedSamples, importance_samples
 from linepose.estimation.noise_models import likelihood_of
 from linepose.estimation.optimise import Optimum, laplace_covariance, minimise
-from linepose.experiments.coverage_survey import NoiseLevels, draw_survey, levels_from_prior
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.shared import SharedPriors
+from linepose.simulation.noise_levels import NoiseLevels
+from linepose.simulation.noisy_survey import draw_survey
 from linepose.simulation.settings import SimulationSettings
 from linepose.survey.observations import Survey
+from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
 N_RANKED: Final = 99  # draws among which the truth is ranked: a hundred ranks
 TRUE_COLUMNS: Final = tuple(f"true_{name}" for name in POSE_COLUMNS)
 RANK_COLUMNS: Final = tuple(f"rank_{name}" for name in POSE_COLUMNS)
 LEVEL_COLUMNS: Final = ("shared_level", "white_level", "pixel_level")
 TRUE_LEVEL_COLUMNS: Final = tuple(f"true_{name}" for name in LEVEL_COLUMNS)
+CELL: Final = ["platform", "regime", "noise_model"]
 _NOTHING: Final = float("nan")
+
+COVERAGE_SURVEYS: Final = pa.schema(
+    [
+        *texts(*CELL),
+        *whole_numbers("survey"),
+        *floats(*TRUE_COLUMNS, *POSE_COLUMNS),
+        *optional_floats(*TRUE_LEVEL_COLUMNS, *SIGMA_COLUMNS, *LEVEL_COLUMNS),
+        *floats("neg_log_likelihood"),
+        *whole_numbers("n_evaluations"),
+        *flags("failed"),
+        *optional_floats(*RANK_COLUMNS, "pareto_shape", "effective_sample_size"),
+        *floats("laplace_credibility", "credibility"),
+    ]
+)
+
+
+def levels_from_prior(random: np.random.Generator, priors: SharedPriors) -> NoiseLevels:
+    """Levels as the shared-error model expects them before it has seen anything."""
+    levels = np.log(priors.level_median) + priors.level_log_sigma * random.standard_normal(3)
+    shared, white, pixel = np.exp(levels).tolist()
+    return NoiseLevels(shared_level=shared, white_level=white, pixel_level=pixel)
 
 
 @dataclass(frozen=True)
@@ -82,7 +107,7 @@ class Cell:
             **dict(
                 zip(
                     TRUE_LEVEL_COLUMNS,
-                    (levels.shared, levels.white, _NOTHING if levels.pixel is None else levels.pixel),
+                    (levels.shared_level, levels.white_level, _or_nothing(levels.pixel_level)),
                     strict=True,
                 )
             ),
@@ -153,6 +178,10 @@ def credibility(samples: WeightedSamples, truth: Floats) -> float:
     factor = np.linalg.cholesky(samples.covariance()[:N_PARAMETERS, :N_PARAMETERS])
     distance = np.linalg.norm(np.linalg.solve(factor, (pose - mean).T), axis=0)
     return float(samples.weights @ (distance < np.linalg.norm(np.linalg.solve(factor, truth - mean))))
+
+
+def _or_nothing(level: float | None) -> float:
+    return _NOTHING if level is None else level
 
 
 def _digest(name: str) -> int:

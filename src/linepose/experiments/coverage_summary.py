@@ -4,18 +4,38 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from scipy.stats import binomtest, chisquare
 
 from linepose.estimation.importance import TRUSTED_SHAPE
-from linepose.experiments.coverage import N_RANKED, RANK_COLUMNS, TRUE_COLUMNS
+from linepose.experiments.coverage import CELL, N_RANKED, RANK_COLUMNS, TRUE_COLUMNS
 from linepose.geometry.pose import POSE_COLUMNS
+from linepose.tables import floats, optional_floats, texts, whole_numbers
 
-CELL: Final = ["platform", "regime", "noise_model"]
 NOMINAL: Final = (0.68, 0.95)
 RMSE_COLUMNS: Final = tuple(f"rmse_{name}" for name in POSE_COLUMNS)
 BIAS_COLUMNS: Final = tuple(f"bias_{name}" for name in POSE_COLUMNS)
 RANK_P_COLUMNS: Final = tuple(f"rank_p_value_{name}" for name in POSE_COLUMNS)
 N_BINS: Final = 20
+
+COVERAGE: Final = pa.schema(
+    [
+        *texts(*CELL),
+        *floats("nominal"),
+        *whole_numbers("n_surveys", "n_covered"),
+        *floats("coverage", "coverage_low", "coverage_high"),
+    ]
+)
+COVERAGE_SUMMARY: Final = pa.schema(
+    [
+        *texts(*CELL),
+        *whole_numbers("n_surveys", "n_failed"),
+        *floats(*(f"coverage_{p}{end}" for p in (68, 95) for end in ("", "_low", "_high"))),
+        *floats("laplace_coverage_68", "laplace_coverage_95"),
+        *optional_floats(*RMSE_COLUMNS, *BIAS_COLUMNS, *RANK_P_COLUMNS),
+        *optional_floats("median_effective_sample_size", "untrusted_share"),
+    ]
+)
 
 
 def clopper_pearson(successes: int, trials: int, confidence: float = 0.95) -> tuple[float, float]:

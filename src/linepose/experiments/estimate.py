@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import ArrayLike, NDArray
 
 from linepose.arrays import Floats
@@ -11,6 +12,7 @@ from linepose.estimation.optimise import Optimum, Search, laplace_covariance, mi
 from linepose.estimation.sampling import IndependenceSettings, SamplingSettings, sample
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
+from linepose.tables import floats, optional_floats, texts, whole_numbers
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,18 @@ class Estimate:
             "neg_log_likelihood": self.neg_log_likelihood,
             "n_evaluations": self.n_evaluations,
         }
+
+
+def estimate_fields(suffix: str = "") -> list[pa.Field]:
+    """The columns of `Estimate.row`, with a suffix at their end; a sigma of a pose that is left open is null."""
+    return [
+        *whole_numbers(f"n_observations{suffix}"),
+        *texts(f"observations{suffix}"),
+        *floats(*(f"{name}{suffix}" for name in POSE_COLUMNS)),
+        *optional_floats(*(f"{name}{suffix}" for name in SIGMA_COLUMNS)),
+        *floats(f"neg_log_likelihood{suffix}"),
+        *whole_numbers(f"n_evaluations{suffix}"),
+    ]
 
 
 def observation_list(numbers: ArrayLike) -> str:

@@ -3,15 +3,21 @@
 One plane serves all poses that are compared, that of the calibrated one, so that only the pose moves the projections.
 """
 
+import logging
 from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
+from pydantic import Field, PositiveFloat
 
 from linepose.arrays import Floats
+from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.inputs import Inputs, log_rows
 from linepose.geometry.camera import Camera, rays, undistort
-from linepose.geometry.plane import Plane, fit_plane_by_height, intersect
+from linepose.geometry.plane import Plane, fit_plane, fit_plane_by_height, intersect
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.rotations import (
     left_jacobian_so3,
@@ -21,13 +27,41 @@ from linepose.geometry.rotations import (
     skew,
     small_rotation_by_euler,
 )
+from linepose.settings import Settings
 from linepose.survey.observations import Survey
+from linepose.tables import floats, optional_floats, texts, whole_numbers
 
+_logger = logging.getLogger(__name__)
 PROJECTED_COLUMNS = ("north_m", "east_m", "down_m")
 _UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))
 _AXES = ("north", "east", "down")
 PROJECTED_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j in _UPPER)
 _DISTORTION_STEP = 1e-6  # for derivatives by k1 and k2, of which undistort is a smooth function near 1
+
+MAPPING: Final = pa.schema(
+    [
+        *texts("pose"),
+        *whole_numbers("observation", "point"),
+        *optional_floats(*PROJECTED_COLUMNS, *PROJECTED_COVARIANCE_COLUMNS),
+    ]
+)
+MAPPING_SUMMARY: Final = pa.schema(
+    [
+        *texts("pose", "observations"),
+        *whole_numbers("n_projected"),
+        *optional_floats("spread_mm", "sigma_mm"),
+        *floats("normal_north", "normal_east", "normal_down", "plane_rms_mm", "equation_26_angle_rad"),
+    ]
+)
+
+
+class MappingSettings(Settings):
+    """The observed points projected onto the pattern's plane."""
+
+    perturbation_deg: PositiveFloat = Field(1.0, description="Turn about each body axis of the perturbed pose (deg).")
+
+
+SECTION: Final = Section("mapping", MappingSettings, MappingSettings(), "Mapping.")
 
 
 def project(survey: Survey, camera: Camera, pose: ArrayLike, plane: Plane) -> Floats:
@@ -190,3 +224,28 @@ def _normalised_covariance(camera: Camera, u_px: Floats) -> Floats:
 
 def _quadratic(jacobian: Floats, covariance: Floats) -> Floats:
     return np.asarray(jacobian @ covariance @ np.swapaxes(jacobian, -1, -2))
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    platform, data, reference = inputs.platform, inputs.data, inputs.reference
+    angle_rad = float(np.deg2rad(inputs.required(SECTION).perturbation_deg))
+    estimated = data.accepted.residuals(reference.parameters).point_m
+    plane = fit_plane(estimated)
+    poses = {
+        "hand_measured": (platform.start_pose(), platform.start_covariance()),
+        "calibrated": (reference.pose, reference.covariance),
+        "perturbed": (perturbed(reference.pose, angle_rad), reference.covariance),
+    }
+    table = mapping_table(data.all.survey, data.all.camera, poses, plane)
+    summary = mapping_summary(table, plane, estimated, data.accepted.survey.number)
+    log_rows(_logger, "%s, %s observations: %.1f mm", summary, ("pose", "observations", "spread_mm"))
+    return {"mapping": table, "mapping_summary": summary}
+
+
+EXPERIMENT: Final = Experiment(
+    name="mapping",
+    title="Mapping before and after",
+    outputs={"mapping": MAPPING, "mapping_summary": MAPPING_SUMMARY},
+    run=_run,
+    section=SECTION,
+)

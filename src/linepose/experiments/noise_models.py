@@ -4,30 +4,40 @@ Beside each pose stand the levels that the model infers, and how far the estimat
 model from the accepted observations. Beside both, what the data say of each parameter of that model.
 """
 
+import logging
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
+from pydantic import Field, PositiveInt
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.estimation.diagnostics import ChainDiagnostics, diagnose_samples
 from linepose.estimation.identifiability import identifiability, in_body_axes, in_words
-from linepose.estimation.noise_models import BALANCED, ROBUST, SHARED, likelihood_of
+from linepose.estimation.noise_models import BALANCED, PUBLISHED, ROBUST, SHARED, likelihood_of
 from linepose.estimation.optimise import Optimum, Search, optimise
 from linepose.estimation.sampling import Chain, IndependenceSettings, SamplingSettings, sample, stage_seed
-from linepose.experiments.estimate import observation_list
+from linepose.experiments.estimate import estimate_fields, observation_list
+from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.inputs import Inputs
+from linepose.experiments.repeatability import SECTION as REPEATABILITY_SECTION
+from linepose.experiments.repeatability import named_pair
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.robust import RobustSharedLikelihood
 from linepose.likelihood.shared import LEVEL_NAMES, SHARED_PARAMETERS, SharedLikelihood
+from linepose.settings import Settings
 from linepose.survey.observations import Survey
+from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
+_logger = logging.getLogger(__name__)
 ALL, INLIERS = "all", "inliers"
 _ONLY_ON: Final = dict.fromkeys(
     (BALANCED.name, ROBUST.name), (ALL, INLIERS)
@@ -37,7 +47,47 @@ LEVELS: Final = tuple(name.removeprefix("log_") for name in LEVEL_NAMES)
 _QUANTILES: Final = {"": 0.5, "_low": 0.16, "_high": 0.84}
 LEVEL_COLUMNS: Final = tuple(f"{level}{end}" for level in LEVELS for end in _QUANTILES)
 
-Settings = SamplingSettings | IndependenceSettings
+Sampling = SamplingSettings | IndependenceSettings
+
+NOISE_MODELS: Final = pa.schema(
+    [
+        *texts("noise_model", "set"),
+        *estimate_fields(),
+        *optional_floats(*EXTRA_PARAMETERS, *LEVEL_COLUMNS),
+        *floats("effective_sample_size", "split_r_hat"),
+        *texts("warning"),
+        *floats("distance_m", "angle_rad", "mahalanobis"),
+        *optional_floats("position_error_m", "rotation_error_rad", "error_in_sigmas"),
+    ]
+)
+IDENTIFIABILITY: Final = pa.schema(
+    [
+        *texts("parameter"),
+        *floats("prior_sigma", "posterior_sigma", "shrinkage", "weakest_direction", "weakest_shrinkage"),
+        *texts("weakest_in_words"),
+    ]
+)
+WEIGHTS: Final = pa.schema(
+    [*whole_numbers("observation", "point"), *floats("view_weight", "point_weight"), *flags("removed")]
+)
+
+
+class NoiseModelsSettings(Settings):
+    """The pose under each noise model, side by side, and whether disjoint observations agree under each."""
+
+    platforms: list[str] = Field(
+        [],
+        description="Platform files with other views of the same pattern by the same camera, such as the forward "
+        "passes; they are run as far as the outlier removal.",
+    )
+    n_splits: PositiveInt = Field(200, description="Random splits of each platform's accepted observations.")
+    robust_steps: int = Field(
+        400, ge=4, description="Steps kept of the robust model's chains, ten times as dear as the shared model's."
+    )
+    batch_size: PositiveInt = Field(20, description="Splits between two savings; no result depends on it.")
+
+
+SECTION: Final = Section("noise_models", NoiseModelsSettings, None, "All noise models side by side.")
 
 
 @dataclass(frozen=True)
@@ -64,7 +114,7 @@ class Fit:
 def fit_noise_models(
     sets: Mapping[str, Survey],
     camera: Camera,
-    settings: Mapping[str, Settings],
+    settings: Mapping[str, Sampling],
     start: ArrayLike,
     seed: int,
     search: Search | None = None,
@@ -95,7 +145,7 @@ def noise_model_table(fits: list[Fit], true_pose: ArrayLike | None = None) -> pd
     """One row a fit: pose, sampled sigmas, levels, the chain's worst diagnostics, and how far it is from two others.
 
     The two are the shared-error estimate of the accepted observations, and the true pose (6,) where it is known, in
-    sigmas of the fit itself. Columns as in `schemas.NOISE_MODELS`.
+    sigmas of the fit itself. Columns as in `NOISE_MODELS`.
     """
     reference = chosen(fits, SHARED.name, INLIERS)
     covariance = reference.pose_covariance()
@@ -157,7 +207,7 @@ def identifiability_table(fits: list[Fit], hand_pose: ArrayLike, hand_covariance
     """One row a parameter of the shared-error model, from the accepted observations: prior against posterior.
 
     Rotations are turns about the body's axes. The hand measurement, a pose (6,) with covariance (6, 6), stands for the
-    pose's prior, which takes no part in the estimate. Columns as in `schemas.IDENTIFIABILITY`.
+    pose's prior, which takes no part in the estimate. Columns as in `IDENTIFIABILITY`.
     """
     fit = chosen(fits, SHARED.name, INLIERS)
     likelihood = fit.likelihood
@@ -182,7 +232,7 @@ def identifiability_table(fits: list[Fit], hand_pose: ArrayLike, hand_covariance
 def weights_table(fits: list[Fit], accepted: ArrayLike) -> pd.DataFrame:
     """One row an observed point: its weight and its view's under the robust model of all observations.
 
-    `removed` says whether the outlier removal took the observation out. Columns as in `schemas.WEIGHTS`.
+    `removed` says whether the outlier removal took the observation out. Columns as in `WEIGHTS`.
     """
     fit = chosen(fits, ROBUST.name, ALL)
     likelihood = fit.likelihood
@@ -198,3 +248,46 @@ def weights_table(fits: list[Fit], accepted: ArrayLike) -> pd.DataFrame:
             "removed": ~np.isin(survey.number[row], np.asarray(accepted)),
         }
     )
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    platform, data = inputs.platform, inputs.data
+    sets = {ALL: data.all.survey, INLIERS: data.accepted.survey}
+    sets |= {name: other.accepted.survey for name, other in inputs.other_data.items()}
+    pair = named_pair(data, inputs.settings(REPEATABILITY_SECTION), inputs.file)
+    sets |= {name: data.accepted.survey.select(list(numbers)) for name, numbers in pair.items()}
+    independence = inputs.sampling("independence_sampling")
+    settings = {
+        PUBLISHED.name: inputs.sampling("sampling"),
+        SHARED.name: independence,
+        BALANCED.name: independence,
+    }
+    settings[ROBUST.name] = independence.replaced(n_steps=inputs.required(SECTION).robust_steps)
+    camera, start = platform.intrinsics(), platform.start_pose()
+    fits = []
+    for fit in fit_noise_models(sets, camera, settings, start, inputs.seed, inputs.search):
+        fits.append(fit)
+        _logger.info("%s, %s: %s", fit.noise_model, fit.set, " ".join(f"{number:.3f}" for number in fit.pose))
+    truth = None if platform.simulation is None else np.array(platform.simulation.true_pose)
+    identified = identifiability_table(fits, start, platform.start_covariance())
+    _logger.info("weakest direction: %s", identified["weakest_in_words"].iloc[0])
+    return {
+        "noise_models": noise_model_table(fits, truth),
+        "identifiability": identified,
+        "weights": weights_table(fits, data.accepted.survey.number),
+    }
+
+
+EXPERIMENT: Final = Experiment(
+    name="noise_models",
+    title="Noise models side by side",
+    outputs={"noise_models": NOISE_MODELS, "identifiability": IDENTIFIABILITY, "weights": WEIGHTS},
+    run=_run,
+    section=SECTION,
+    reads=(REPEATABILITY_SECTION,),
+    needs=("observations", "outliers"),
+    study=("seed", "search", "sampling", "independence_sampling"),
+    compares=True,
+    every_noise_model=True,
+    cores=2,
+)

@@ -5,22 +5,40 @@ The measure is the data's weight where both are Gaussian, `1 - (posterior / prio
 have beside the hand measurement. Rotations are turns about the body's axes, which mean something to a reader.
 """
 
+import logging
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.estimation.identifiability import in_body_axes
+from linepose.experiments.experiment import Experiment
+from linepose.experiments.inputs import Inputs, log_rows
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood.prior import PosePrior
+from linepose.pipeline.stages import SAMPLES
+from linepose.tables import flags, floats, read_table, texts
+
+_logger = logging.getLogger(__name__)
 
 DATA: Final = "data"
 PRIOR: Final = "prior"
 BOTH: Final = "data and prior"
 _DECIDING: Final = 0.75  # of the weight; the sigma is then half the prior's or less
+
+PRIOR_TABLE: Final = pa.schema(
+    [
+        *texts("parameter"),
+        *floats("difference", "sigma", "prior_sigma", "data_weight"),
+        *flags("prior_counted_in"),
+        *texts("decided_by"),
+    ]
+)
 
 
 def prior_table(
@@ -35,7 +53,7 @@ def prior_table(
 
     `names`, `parameters` (P,) and `covariance` (P, P) are the estimate's; `hand` is the hand measurement, in the
     estimate as a prior or not, as `counted_in` says. `others` has centre and sigma of the prior that a noise model
-    brings for parameters beyond the pose; ones without are left out. Columns as in `schemas.PRIOR`.
+    brings for parameters beyond the pose; ones without are left out. Columns as in `PRIOR_TABLE`.
     """
     vector = np.asarray(parameters, dtype=float)
     turned_names, turned = in_body_axes(names, vector, covariance)
@@ -72,3 +90,22 @@ def _decider(weight: float) -> str:
     if weight >= _DECIDING:
         return DATA
     return PRIOR if weight <= 1 - _DECIDING else BOTH
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    platform, likelihood = inputs.platform, inputs.data.accepted
+    names = likelihood.parameter_names
+    samples = read_table(Path(inputs.files["samples"]) / "inliers.parquet", SAMPLES)[list(names)]
+    table = prior_table(
+        names,
+        inputs.reference.parameters,
+        np.cov(samples.to_numpy().T),
+        platform.hand_measurement(),
+        likelihood.parameter_priors(),
+        platform.pose_prior() is not None,
+    )
+    log_rows(_logger, "%s: decided by %s, weight of the data %.2f", table, ("parameter", "decided_by", "data_weight"))
+    return {"prior": table}
+
+
+EXPERIMENT: Final = Experiment(name="prior", title="Decided by data or prior", outputs={"prior": PRIOR_TABLE}, run=_run)

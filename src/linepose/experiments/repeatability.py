@@ -1,27 +1,59 @@
-"""Repeatability: whether disjoint sets of observations give the same pose (section 4.5, Table 5).
+"""Repeatability: whether two disjoint sets of observations give the same pose (section 4.5, Table 5).
 
-Beyond the paper, which compares two subsets by eye: the distance of the two poses in sigmas with its p-value, the
-same over many random splits, and what each single observation does to the pose.
+Beyond the paper, which compares two subsets by eye: the distance of the two poses in sigmas with its p-value.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+import logging
+from collections.abc import Mapping, Sequence
+from typing import Final, Self
 
-import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
+from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
 from linepose.errors import InputError
 from linepose.estimation.optimise import Search
 from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
-from linepose.experiments.estimate import Estimate, estimate_by_curvature, estimate_by_sampling, observation_list
-from linepose.geometry.distance import (
-    euclidean_distance_m,
-    geodesic_angle_rad,
-    mahalanobis_between,
-    mahalanobis_distance,
-    p_value,
-)
+from linepose.experiments.accepted import Accepted
+from linepose.experiments.agreement import AGREEMENT, agreement
+from linepose.experiments.estimate import estimate_by_sampling, estimate_fields, observation_list
+from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.inputs import Inputs
+from linepose.experiments.subsets import SubsetSettings, chosen_subsets
 from linepose.likelihood.base import Likelihood
+from linepose.settings import Settings
+from linepose.tables import texts
+
+_logger = logging.getLogger(__name__)
+
+REPEATABILITY: Final = pa.schema([*texts("subset"), *estimate_fields(), *AGREEMENT])
+
+
+class RepeatabilitySettings(Settings):
+    """Whether disjoint sets of observations give the same pose."""
+
+    first: SubsetSettings | None = Field(None, description="The first of two disjoint subsets.")
+    second: SubsetSettings | None = Field(None, description="The second one.")
+    n_splits: NonNegativeInt = Field(200, description="Random splits into two disjoint subsets.")
+    split_size: PositiveInt | None = Field(None, description="Observations in each; half of the accepted ones if null.")
+
+    @model_validator(mode="after")
+    def _both_or_none(self) -> Self:
+        if (self.first is None) != (self.second is None):
+            raise ValueError("repeatability needs both first and second, or neither")
+        return self
+
+
+SECTION: Final = Section("repeatability", RepeatabilitySettings, RepeatabilitySettings(), "Disjoint subsets.")
+
+
+def named_pair(data: Accepted, settings: RepeatabilitySettings | None, file: str) -> dict[str, Sequence[int]]:
+    """Observation numbers of the two disjoint subsets that a platform's file names; none where it names none."""
+    if settings is None or settings.first is None or settings.second is None:
+        return {}
+    pair = {"subset_1": settings.first, "subset_2": settings.second}
+    return chosen_subsets(data, pair, f"{file}: experiments.{SECTION.key}")
 
 
 def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> None:
@@ -31,23 +63,6 @@ def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> N
         raise InputError(
             place, f"observation {observation_list(shared)} in both subsets", "disjoint subsets", "remove it from one"
         )
-
-
-def consistency(first: Estimate, second: Estimate) -> dict[str, float]:
-    """How far two independent estimates lie apart: metres, radians, sigmas, and the p-value of that.
-
-    The last two are NaN where an estimate has no covariance. Raises EstimationError for a singular one.
-    """
-    known = np.all(np.isfinite(first.covariance + second.covariance))
-    distance = (
-        mahalanobis_between(first.pose, first.covariance, second.pose, second.covariance) if known else float("nan")
-    )
-    return {
-        "distance_m": float(euclidean_distance_m(first.pose, second.pose)),
-        "angle_rad": float(geodesic_angle_rad(first.pose, second.pose)),
-        "mahalanobis": distance,
-        "p_value": float(p_value(distance)),
-    }
 
 
 def compare_subsets(
@@ -69,69 +84,27 @@ def compare_subsets(
         estimate_by_sampling(likelihood.select(list(numbers)), start, seed, search, settings)
         for numbers in (first, second)
     ]
-    agreement = consistency(*estimates)
-    rows = [{"subset": name, **estimate.row(), **agreement} for name, estimate in zip(subsets, estimates, strict=True)]
+    apart = agreement(*estimates)
+    rows = [{"subset": name, **estimate.row(), **apart} for name, estimate in zip(subsets, estimates, strict=True)]
     return pd.DataFrame(rows)
 
 
-def split_numbers(numbers: ArrayLike, size: int, seed: int, index: int) -> tuple[list[int], list[int]]:
-    """Two disjoint random subsets of `size` numbers each, ascending: a function of the seed and the split's index.
-
-    Raises InputError where there are not enough numbers for two subsets.
-    """
-    available = np.asarray(numbers)
-    if size < 1 or 2 * size > len(available):
-        raise InputError(
-            "repeatability.split_size",
-            f"{size}",
-            f"1 to {len(available) // 2}, half of the {len(available)} accepted observations",
-            "change it",
-        )
-    random = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
-    drawn = random.permutation(available)[: 2 * size]
-    return sorted(drawn[:size].tolist()), sorted(drawn[size:].tolist())
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    pair = named_pair(inputs.data, inputs.required(SECTION), inputs.file)
+    place, start = f"{inputs.file}: experiments.{SECTION.key}", inputs.platform.start_pose()
+    table = compare_subsets(inputs.data.accepted, pair, start, inputs.seed, place, inputs.search, inputs.sampling())
+    _logger.info("%.2f sigmas apart, p = %.2f", table["mahalanobis"].iloc[0], table["p_value"].iloc[0])
+    return {"repeatability": table}
 
 
-def random_splits(
-    likelihood: Likelihood, start: ArrayLike, size: int, indices: Iterable[int], seed: int, search: Search | None = None
-) -> pd.DataFrame:
-    """One row a random split: the two poses, with sigmas from the curvature, and how far they lie apart; start (6,).
-
-    A row depends on the seed and its index alone. Where a subset leaves a direction of the pose open, its sigmas and
-    the distance in sigmas are NaN.
-    """
-    rows = []
-    for index in indices:
-        halves = split_numbers(likelihood.survey.number, size, seed, index)
-        first, second = (estimate_by_curvature(likelihood.select(half), start, search) for half in halves)
-        columns = {
-            f"{name}_{k}": value
-            for k, estimate in enumerate((first, second), 1)
-            for name, value in estimate.row().items()
-        }
-        rows.append({"split": index, **columns, **consistency(first, second)})
-    return pd.DataFrame(rows)
-
-
-def leave_one_out(
-    likelihood: Likelihood, pose: ArrayLike, covariance: ArrayLike, search: Search | None = None
-) -> pd.DataFrame:
-    """One row an observation: the pose without it, and its influence, how far that lies from the full estimate.
-
-    The influence is a distance in sigmas of the full estimate, a pose (6,) with its covariance (6, 6).
-    """
-    rows = []
-    numbers = likelihood.survey.number.tolist()
-    for number in numbers:
-        rest = likelihood.select([other for other in numbers if other != number])
-        without = estimate_by_curvature(rest, pose, search)
-        rows.append(
-            {
-                "left_out": number,
-                **without.row(),
-                "distance_m": float(euclidean_distance_m(without.pose, pose)),
-                "angle_rad": float(geodesic_angle_rad(without.pose, pose)),
-                "influence": float(mahalanobis_distance(without.pose, pose, covariance)),
-            }
-        )
-    return pd.DataFrame(rows)
+EXPERIMENT: Final = Experiment(
+    name="repeatability",
+    title="Two disjoint subsets",
+    outputs={"repeatability": REPEATABILITY},
+    run=_run,
+    section=SECTION,
+    wanted=lambda settings: settings and settings.first,
+    needs=("observations", "outliers"),
+    study=("seed", "search", "own_sampling"),
+    cores=2,
+)

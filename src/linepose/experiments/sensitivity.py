@@ -3,18 +3,47 @@
 The sigmas are the curvature's: a sampled one carries the chain's noise, which is larger than most of the changes.
 """
 
+import logging
 from collections.abc import Mapping
+from typing import Final
 
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
+from pydantic import Field
 
+from linepose.estimation.noise_models import PUBLISHED
 from linepose.estimation.optimise import Search
-from linepose.experiments.estimate import estimate_by_curvature
+from linepose.experiments.estimate import estimate_by_curvature, estimate_fields
+from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.inputs import Inputs, log_rows
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
 from linepose.likelihood.base import Likelihood
+from linepose.likelihood.pixels import PixelLikelihood
+from linepose.pipeline.platform_likelihood import platform_likelihood
+from linepose.settings import Settings
+from linepose.tables import floats, optional_floats, texts
 
+_logger = logging.getLogger(__name__)
 NOMINAL = "nominal"
+
+SENSITIVITY: Final = pa.schema(
+    [*texts("change"), *estimate_fields(), *floats("distance_m", "angle_rad"), *optional_floats("mahalanobis")]
+)
+
+
+class SensitivitySettings(Settings):
+    """The pose under other choices."""
+
+    platforms: list[str] = Field(
+        [],
+        description="Platform files of the same camera with other data choices (covariance columns, views), whose pose "
+        "is held against this one; they are run as far as the outlier removal.",
+    )
+
+
+SECTION: Final = Section("sensitivity", SensitivitySettings, SensitivitySettings(), "Other choices.")
 
 
 def camera_changes(camera: Camera) -> dict[str, Camera]:
@@ -53,3 +82,28 @@ def sensitivity(
             }
         )
     return pd.DataFrame(rows)
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    platform, nominal = inputs.platform, inputs.data.accepted
+    changes: dict[str, Likelihood] = {}
+    if platform.noise_model == PUBLISHED.name:  # the other models' residuals are in pixels
+        changes["residual in pixels"] = PixelLikelihood(nominal)
+    for name, camera in camera_changes(platform.intrinsics()).items():
+        changes[name] = platform_likelihood(platform, nominal.survey, camera)
+    changes |= {name: other.accepted for name, other in inputs.other_data.items()}
+    table = sensitivity(nominal, changes, platform.start_pose(), inputs.search)
+    log_rows(_logger, "%s: %.2f sigmas", table, ("change", "mahalanobis"))
+    return {"sensitivity": table}
+
+
+EXPERIMENT: Final = Experiment(
+    name="sensitivity",
+    title="Sensitivity to other choices",
+    outputs={"sensitivity": SENSITIVITY},
+    run=_run,
+    section=SECTION,
+    needs=("observations", "outliers"),
+    study=("search",),
+    compares=True,
+)

@@ -1,44 +1,60 @@
 """Angular diversity: what the pose and its sigma owe to the body angles of the observations (section 4.4, Table 4)."""
 
+import logging
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal, Self
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import ArrayLike
+from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt, model_validator
 
-from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.estimation.optimise import Search
 from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
-from linepose.experiments.estimate import estimate_by_sampling, observation_list
+from linepose.experiments.accepted import Accepted
+from linepose.experiments.estimate import estimate_by_sampling, estimate_fields, observation_list
+from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.inputs import Inputs, log_rows
 from linepose.likelihood.base import Likelihood
-from linepose.survey.observations import EULER_COLUMNS, Survey
+from linepose.settings import Settings
+from linepose.survey.body_angles import BODY_ANGLES, body_angles_rad
+from linepose.survey.observations import Survey
+from linepose.tables import texts
 
 _RAYS_PER_POINT: Final = 2
-BODY_ANGLES: Final = tuple(name.removesuffix("_rad") for name in EULER_COLUMNS)
+_logger = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class AngleRule:
-    """Draw `count` observations for which `minimum_rad <= |angle| < maximum_rad`; angle: roll, pitch or yaw."""
+class AngleRule(Settings):
+    """Draw observations whose body angle is in a range."""
 
-    angle: str
-    minimum_rad: float
-    maximum_rad: float
-    count: int
+    angle: Literal["roll", "pitch", "yaw"] = Field(description="The body angle, averaged over an observation's points.")
+    minimum_deg: NonNegativeFloat = Field(0.0, description="The angle's size is this or more (deg).")
+    maximum_deg: PositiveFloat = Field(180.0, description="The angle's size is below this (deg).")
+    count: PositiveInt = Field(description="How many observations are drawn.")
 
     def __str__(self) -> str:
-        low, high = np.degrees([self.minimum_rad, self.maximum_rad])
-        return f"{low:g} <= |{self.angle}| < {high:g} deg"
+        return f"{self.minimum_deg:g} <= |{self.angle}| < {self.maximum_deg:g} deg"
 
 
-def body_angles_rad(survey: Survey) -> Floats:
-    """Mean roll, pitch, yaw of each observation over the points it has; (N, 3)."""
-    return np.asarray(
-        np.arctan2(np.nanmean(np.sin(survey.euler_rad), axis=1), np.nanmean(np.cos(survey.euler_rad), axis=1))
-    )
+class SubsetSettings(Settings):
+    """Accepted observations, by number or by rules on body angles."""
+
+    observations: list[int] = Field([], description="Observation numbers; or give rules.")
+    rules: list[AngleRule] = Field([], description="Draw at random, for each rule in turn, none twice.")
+    seed: NonNegativeInt = Field(0, description="Seed of the draw.")
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        if bool(self.observations) == bool(self.rules):
+            raise ValueError("a subset needs either observations or rules")
+        return self
+
+
+SUBSETS: Final = pa.schema([*texts("subset"), *estimate_fields()])
+SECTION: Final = Section("subsets", dict[str, SubsetSettings], {}, "Subsets whose poses are compared, by name.")
 
 
 def draw_by_rules(survey: Survey, rules: Sequence[AngleRule], seed: int, place: str) -> tuple[int, ...]:
@@ -51,7 +67,8 @@ def draw_by_rules(survey: Survey, rules: Sequence[AngleRule], seed: int, place: 
     chosen: list[int] = []
     for rule in rules:
         angle = size[:, BODY_ANGLES.index(rule.angle)]
-        within = survey.number[(angle >= rule.minimum_rad) & (angle < rule.maximum_rad)]
+        low, high = np.deg2rad([rule.minimum_deg, rule.maximum_deg])
+        within = survey.number[(angle >= low) & (angle < high)]
         left = np.setdiff1d(within, chosen)
         if len(left) < rule.count:
             raise InputError(
@@ -81,6 +98,19 @@ def check_subset(numbers: Sequence[int], accepted: ArrayLike, known: ArrayLike, 
         raise InputError(place, f"{len(numbers)} observations", f"at least {_RAYS_PER_POINT}", "name more")
 
 
+def chosen_subset(data: Accepted, settings: SubsetSettings, place: str) -> tuple[int, ...]:
+    """Observation numbers that settings name or draw from the accepted ones; raises InputError, naming `place`."""
+    survey = data.accepted.survey
+    numbers = tuple(settings.observations) or draw_by_rules(survey, settings.rules, settings.seed, place)
+    check_subset(numbers, survey.number, data.all.survey.number, place)
+    return numbers
+
+
+def chosen_subsets(data: Accepted, settings: Mapping[str, SubsetSettings], place: str) -> dict[str, Sequence[int]]:
+    """Observation numbers of each subset, by name."""
+    return {name: chosen_subset(data, one, f"{place}.{name}") for name, one in settings.items()}
+
+
 def subset_estimates(
     likelihood: Likelihood,
     subsets: Mapping[str, Sequence[int]],
@@ -95,3 +125,23 @@ def subset_estimates(
         estimate = estimate_by_sampling(likelihood.select(list(numbers)), start, seed, search, settings)
         rows.append({"subset": name, **estimate.row()})
     return pd.DataFrame(rows)
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    subsets = chosen_subsets(inputs.data, inputs.required(SECTION), f"{inputs.file}: experiments.{SECTION.key}")
+    start, sampling = inputs.platform.start_pose(), inputs.sampling()
+    table = subset_estimates(inputs.data.accepted, subsets, start, inputs.seed, inputs.search, sampling)
+    log_rows(_logger, "%s: observations %s, -log L %.6f", table, ("subset", "observations", "neg_log_likelihood"))
+    return {"subsets": table}
+
+
+EXPERIMENT: Final = Experiment(
+    name="subsets",
+    title="Subsets of observations",
+    outputs={"subsets": SUBSETS},
+    run=_run,
+    section=SECTION,
+    needs=("observations", "outliers"),
+    study=("seed", "search", "own_sampling"),
+    cores=2,
+)

@@ -1,6 +1,8 @@
 """How far an estimate is from the truth of a simulated survey, in metres, radians and its own sigmas."""
 
+import logging
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -9,9 +11,14 @@ import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
+from linepose.experiments.experiment import Experiment
+from linepose.experiments.inputs import Inputs
 from linepose.geometry import rotations
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
-from linepose.tables import floats, texts, whole_numbers
+from linepose.pipeline.stages import OPTIMA, SAMPLES
+from linepose.tables import floats, read_table, texts, whole_numbers
+
+_logger = logging.getLogger(__name__)
 
 POSITION, ROTATION, POSE = "position_m", "rotation_rad", "pose"
 _PARTS: Final = {POSITION: slice(0, 3), ROTATION: slice(3, 6), POSE: slice(0, 6)}
@@ -32,7 +39,7 @@ def truth_error_table(optima: pd.DataFrame, samples: Mapping[str, Floats], true_
     `optima` has a row a stage, `samples` (S, 6) the draws from its posterior, whose covariance gives the sigmas.
     A whole's error is the distance (m) or the angle between the rotations (rad); in sigmas it is the Mahalanobis
     distance, which for the whole pose, that has no unit, is the error itself. Columns as in
-    `result_schemas.TRUTH_ERROR`.
+    `TRUTH_ERROR`.
     """
     truth = np.array(true_pose, dtype=float)  # a copy: tables give arrays that may not be written to
     rows = []
@@ -72,3 +79,22 @@ def _mahalanobis(error: Floats, covariance: Floats) -> float:
 def _angle(estimate: Floats, truth: Floats) -> float:
     first, second = (rotations.matrix_from_rotation_vector(pose[3:]) for pose in (estimate, truth))
     return float(rotations.rotation_angle_rad(first, second))
+
+
+def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    optima, folder = inputs.table("optima", OPTIMA), Path(inputs.files["samples"])
+    samples = {name: flat_samples(read_table(folder / f"{name}.parquet", SAMPLES)) for name in optima["stage"]}
+    table = truth_error_table(optima, samples, true_pose(read_table(inputs.files["truth"])))
+    whole = table[(table["stage"] == "inliers") & (table["quantity"] == POSE)].iloc[0]
+    _logger.info("inliers: Mahalanobis distance to the truth %.2f", whole["error_in_sigmas"])
+    return {"truth_error": table}
+
+
+EXPERIMENT: Final = Experiment(
+    name="truth_error",
+    title="Error against the truth",
+    outputs={"truth_error": TRUTH_ERROR},
+    run=_run,
+    needs=("optima", "samples", "truth"),
+    truth=True,
+)

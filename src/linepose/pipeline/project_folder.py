@@ -1,12 +1,10 @@
 """A project on disk: the folder that holds config/config.yaml, found from anywhere below it."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from linepose.config.platform import read_yaml
-from linepose.config.project import Project, load_project
-from linepose.config.study import DatasetSection
+from linepose.config.project import Compared, Project, compared_with_none, load_project
 from linepose.errors import InputError
 
 CONFIG: Final = Path("config") / "config.yaml"
@@ -23,11 +21,11 @@ def find_project(start: Path | str = ".") -> Path:
 
 
 def load_platform_project(
-    name: str, root: Path, can_download: Callable[[DatasetSection], bool] = lambda _: True
+    name: str, root: Path, compared: Compared = compared_with_none, offline: bool = False
 ) -> Project:
     """The project in a folder as if this platform were its only one; raises InputError.
 
-    Relative data folders are taken from `root`.
+    Relative data folders are taken from `root`. `compared` as in `load_project`; `offline` as in config.yaml.
     """
-    values = read_yaml(root / CONFIG)
-    return load_project(values | {"platforms": [name]}, root, can_download)
+    values: dict[str, Any] = read_yaml(root / CONFIG) | {"platforms": [name]}
+    return load_project(values | ({"offline": True} if offline else {}), root, compared)

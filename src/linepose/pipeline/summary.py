@@ -9,9 +9,8 @@ import pyarrow as pa
 
 from linepose.arrays import Floats
 from linepose.estimation.outliers import OUTLIERS
-from linepose.experiments import schemas
-from linepose.experiments.split_summary import sigma_factor
-from linepose.experiments.subsets import body_angles_rad
+from linepose.experiments.leave_one_out import LEAVE_ONE_OUT
+from linepose.experiments.splits import SPLITS, sigma_factor
 from linepose.output.figures.checks import accepted_rows, stage_rows, usable_chain
 from linepose.output.figures.results import PlatformResults
 from linepose.pipeline.pose_tables import (
@@ -24,6 +23,7 @@ from linepose.pipeline.pose_tables import (
 from linepose.pipeline.residual_tables import RESIDUALS, intraclass_correlation
 from linepose.pipeline.stages import DIAGNOSTICS, OPTIMA
 from linepose.pipeline.verdict import Evidence, Verdict, judge
+from linepose.survey.body_angles import body_angles_rad
 from linepose.survey.observations import Survey
 
 
@@ -154,13 +154,13 @@ def tilt_spread_deg(survey: Survey) -> float:
 def _sigma_factor(results: Results) -> float | None:
     if not results.has("splits"):
         return None
-    splits = results.table("splits", schemas.SPLITS)
+    splits = results.table("splits", SPLITS)
     return sigma_factor(splits) if splits["mahalanobis"].notna().any() else None
 
 
 def _influence(results: Results) -> tuple[int | None, float | None]:
     if not results.has("leave_one_out"):
         return None, None
-    table = results.table("leave_one_out", schemas.LEAVE_ONE_OUT)
+    table = results.table("leave_one_out", LEAVE_ONE_OUT)
     most = table.loc[table["influence"].idxmax()]
     return int(most["left_out"]), float(most["influence"])

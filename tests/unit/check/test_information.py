@@ -10,10 +10,10 @@ from linepose.check.prediction import predict
 from linepose.check.replay import crossing, in_camera, replayed
 from linepose.config.platform import load_platform
 from linepose.estimation.optimise import laplace_covariance, optimise
-from linepose.experiments.subsets import body_angles_rad
 from linepose.geometry.camera import rays
 from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
 from linepose.likelihood.published import PublishedLikelihood
+from linepose.survey.body_angles import body_angles_rad
 from unit.recorded_files import simulated_survey
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from linepose.estimation.optimise import Search, optimise
 from linepose.estimation.optimisers import search_as_published
-from linepose.experiments.basin import BasinGrid, Region, start_pose
+from linepose.experiments.basin import BasinSettings, start_pose
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.likelihood.published import PublishedLikelihood
 from unit.likelihood.surveys import INLIERS, field_survey
@@ -40,7 +40,8 @@ def test_triangle_of_section_4_7_is_all_basin(field_data, ladybird, published):
     likelihood = PublishedLikelihood(survey, ladybird.intrinsics())
     inliers = published["table3"]["ladybird"]["inliers_16"]
     reference = optimise(likelihood, inliers["pose"]).parameters
-    grid, region = BasinGrid(), Region()
+    grid = BasinSettings()
+    region = grid.region()
     cells = [cell for cell in range(grid.n_cells) if region.holds(*grid.offset(cell))]
     assert len(cells) == 37
     for cell in cells:

@@ -9,7 +9,7 @@ from linepose.errors import InputError
 from linepose.estimation.optimise import Search, optimise
 from linepose.estimation.optimisers import OPTIMISERS, optimiser
 from linepose.estimation.wide_search import WideSearch, moved_and_turned, refine, search_widely, whitened_residuals
-from linepose.experiments.basin import BasinGrid, start_pose
+from linepose.experiments.basin import BasinSettings, start_pose
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.survey.observations import Survey
 from unit.likelihood.surveys import DISTORTED_CAMERA, SYNTHETIC_POSE, synthetic_survey
@@ -72,7 +72,7 @@ def test_finds_the_optimum_where_a_point_lies_behind_the_start(likelihood):
     """Two starts of a sweep at which the likelihood is not defined; at the second one, for no rotation."""
     expected = optimise(likelihood, SYNTHETIC_POSE).neg_log_likelihood
     for cell in (34, 53):
-        start = start_pose(BasinGrid(n_distances=8, n_angles=8), SYNTHETIC_POSE, 1, cell)
+        start = start_pose(BasinSettings(n_distances=8, n_angles=8), SYNTHETIC_POSE, 1, cell)
         assert likelihood.log_likelihood(start) == -np.inf
         assert search_widely(likelihood, start).neg_log_likelihood == pytest.approx(expected, rel=1e-5)
         assert optimise(likelihood, start).neg_log_likelihood > 2 * expected

@@ -1,43 +1,12 @@
-"""Configured subsets of the accepted observations, and where the experiments' inputs come from."""
+"""Where the experiments' inputs come from."""
 
 import numpy as np
 import pandas as pd
-import pytest
 
-from linepose.config.experiments import RuleSection, SubsetSection
-from linepose.errors import InputError
-from linepose.experiments.accepted import Accepted, read_reference
+from linepose.experiments.accepted import read_reference
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS, OPTIMA, SAMPLES
 from linepose.tables import write_table
-
-
-@pytest.fixture
-def data(gaussian):
-    """Observation 7 of twelve was rejected."""
-    return Accepted(gaussian, gaussian.select([1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12]))
-
-
-def test_listed_and_drawn_subsets(data):
-    listed = SubsetSection(observations=[5, 3, 9])
-    drawn = SubsetSection(rules=[RuleSection(angle="roll", count=11)])
-    found = data.subsets({"listed": listed, "drawn": drawn}, "robot.yaml: subsets")
-    assert found["listed"] == (5, 3, 9)
-    assert found["drawn"] == (1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12)
-
-
-@pytest.mark.parametrize(
-    ("section", "told"),
-    [
-        (SubsetSection(observations=[1, 7]), "observation 7, which was rejected as an outlier"),
-        (SubsetSection(observations=[1, 13]), "observation 13, which does not exist"),
-        (SubsetSection(rules=[RuleSection(angle="roll", count=12)]), "11 observations with 0 <= |roll| < 180 deg"),
-    ],
-)
-def test_subset_that_cannot_be_used_names_its_key(data, section, told):
-    with pytest.raises(InputError) as caught:
-        data.subsets({"bad": section}, "robot.yaml: subsets")
-    assert str(caught.value).startswith(f"robot.yaml: subsets.bad: found {told}")
 
 
 def test_reference_is_the_inliers_optimum_with_their_samples_covariance(gaussian, tmp_path):

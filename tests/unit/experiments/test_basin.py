@@ -9,10 +9,10 @@ from scipy.stats import kstest
 from linepose.errors import InputError
 from linepose.estimation.optimise import Optimum
 from linepose.estimation.optimisers import OPTIMISERS
-from linepose.experiments.basin import BasinGrid, Region, Sweep, start_pose, summarise, wilson_interval
+from linepose.experiments.basin import BasinSettings, Sweep, start_pose, summarise, wilson_interval
 from unit.experiments.conftest import SIGMA, TRUE_POSE
 
-GRID = BasinGrid(n_distances=6, n_angles=5)
+GRID = BasinSettings(n_distances=6, n_angles=5)
 
 
 @pytest.mark.parametrize("reference", [TRUE_POSE, np.array([0, 0, 0, 2.0, -1.9, 1.2])], ids=["usual", "near pi"])
@@ -35,7 +35,7 @@ def test_cells_tile_the_whole_range_uniformly():
 @pytest.mark.statistical
 def test_directions_and_axes_are_uniform_on_the_sphere():
     """A uniform direction's coordinates are uniform on [-1, 1] (Archimedes); Kolmogorov-Smirnov at 0.1 %, seeded."""
-    grid = BasinGrid(n_distances=40, n_angles=40)
+    grid = BasinSettings(n_distances=40, n_angles=40)
     starts = np.array([start_pose(grid, np.zeros(6), 2, cell) for cell in range(grid.n_cells)])
     for part in (starts[:, :3], starts[:, 3:]):
         unit = part / np.linalg.norm(part, axis=1, keepdims=True)
@@ -54,12 +54,12 @@ def test_start_is_a_function_of_seed_and_cell():
         ({"n_distances": 0}, "n_distances"),
         ({"n_angles": -3}, "n_angles"),
         ({"maximum_distance_m": 0.0}, "maximum_distance"),
-        ({"maximum_angle_rad": float("nan")}, "maximum_angle"),
+        ({"maximum_angle_deg": float("nan")}, "maximum_angle"),
     ],
 )
 def test_grid_of_no_size_is_refused(settings, key):
-    with pytest.raises(InputError, match=rf"basin\.{key}"):
-        BasinGrid(**settings)
+    with pytest.raises(InputError, match=rf"BasinSettings: {key}"):
+        BasinSettings(**settings)
 
 
 @pytest.mark.parametrize("model", ["gaussian", "gaussian_11"])
@@ -101,7 +101,7 @@ def test_summary_counts_the_triangle():
             "n_evaluations": [10, 20, 30, 40, 50],
         }
     )
-    table = summarise(sweep, Region()).set_index("region")
+    table = summarise(sweep, BasinSettings().region()).set_index("region")
     assert table["n_starts"].to_dict() == {"inside": 3, "outside": 2, "all": 5}
     assert table["n_successes"].to_dict() == {"inside": 2, "outside": 1, "all": 3}
     assert table.loc["all", "success_rate"] == pytest.approx(0.6)
@@ -109,7 +109,7 @@ def test_summary_counts_the_triangle():
 
 def test_summary_of_an_empty_region_has_no_rate():
     sweep = pd.DataFrame({"distance_m": [1.9], "angle_rad": [1.0], "success": [True], "n_evaluations": [10]})
-    table = summarise(sweep, Region()).set_index("region")
+    table = summarise(sweep, BasinSettings().region()).set_index("region")
     assert np.isnan(table.loc["inside", ["success_rate", "success_rate_low"]].to_numpy(float)).all()
 
 
@@ -118,3 +118,9 @@ def test_wilson_interval_is_the_closed_form():
     centre = (k + z**2 / 2) / (n + z**2)
     half = z / (n + z**2) * np.sqrt(k * (n - k) / n + z**2 / 4)
     assert wilson_interval(k, n) == pytest.approx((centre - half, centre + half), rel=1e-9)
+
+
+def test_angles_become_radians():
+    settings = BasinSettings(maximum_angle_deg=90, n_angles=1, region_angle_deg=30)
+    assert settings.offset(0)[1] == pytest.approx(np.pi / 4)
+    assert settings.region().angle_rad == pytest.approx(np.pi / 6)

@@ -9,13 +9,13 @@ from linepose.config.platform import load_platform
 from linepose.estimation.optimise import laplace_covariance, optimise
 from linepose.estimation.sampling import SamplingSettings
 from linepose.experiments.clock_offset import (
+    CLOCK_OFFSET,
     CORRELATION_COLUMNS,
     ClockOffsetEvidence,
     PoseWithoutOffset,
     correlation_with_all,
     estimate_clock_offset,
 )
-from linepose.experiments.schemas import CLOCK_OFFSET
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.simulation.navigation_error import mixed
 from linepose.tables import read_table, write_table

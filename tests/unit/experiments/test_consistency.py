@@ -5,9 +5,16 @@ import pytest
 from scipy.stats import chi
 
 from linepose.errors import InputError
-from linepose.experiments.consistency import NAMED_SUBSETS, Comparisons, Group, groups_of, summarise_consistency
-from linepose.experiments.repeatability import split_numbers
-from linepose.experiments.schemas import CONSISTENCY, CONSISTENCY_SUMMARY
+from linepose.experiments.consistency import (
+    CONSISTENCY,
+    CONSISTENCY_SUMMARY,
+    NAMED_SUBSETS,
+    Comparisons,
+    Group,
+    groups_of,
+    summarise_consistency,
+)
+from linepose.experiments.splits import split_numbers
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.likelihood.shared import SharedLikelihood

@@ -5,8 +5,11 @@ import pandas as pd
 import pytest
 from scipy.stats import binom
 
-from linepose.experiments.coverage import RANK_COLUMNS, estimate_row
+from linepose.config.platform import load_platform
+from linepose.experiments.coverage import RANK_COLUMNS, Cell, estimate_row, levels_from_prior
 from linepose.experiments.coverage_summary import rank_p_value
+from linepose.likelihood.shared import SharedPriors
+from linepose.simulation.noise_levels import NoiseLevels
 
 SIGMA = np.array([0.03, 0.05, 0.06, 0.016, 0.018, 0.009])
 N = 400
@@ -51,3 +54,25 @@ def test_open_direction_is_a_failed_estimate_that_holds_nothing(function_likelih
     assert row["failed"]
     assert (row["credibility"], row["laplace_credibility"]) == (1.0, 1.0)
     assert np.isnan(row["rank_r_x_m"])
+
+
+def test_same_number_is_the_same_survey_for_every_noise_model(platforms_folder):
+    platform = load_platform(platforms_folder, "ladybird-sim")
+
+    def cell(model, regime="white"):
+        simulation, camera = platform.simulation, platform.intrinsics()
+        return Cell("p", regime, model, camera, simulation, platform.start_pose(), NoiseLevels(white_level=1.0), 7)
+
+    first, second = (cell(model).survey(4)[0] for model in ("published", "balanced"))
+    np.testing.assert_array_equal(first.position_m, second.position_m)
+    assert not np.array_equal(first.position_m, cell("published").survey(5)[0].position_m)
+    assert not np.array_equal(first.position_m, cell("published", "shared").survey(4)[0].position_m)
+
+
+@pytest.mark.statistical
+def test_levels_are_the_priors():
+    random, priors = np.random.default_rng(1), SharedPriors()
+    levels = [levels_from_prior(random, priors) for _ in range(500)]
+    logs = np.log([[one.shared_level, one.white_level, one.pixel_level] for one in levels])
+    np.testing.assert_allclose(logs.mean(axis=0), np.log(0.5), atol=4 * 1.5 / np.sqrt(500))
+    np.testing.assert_allclose(logs.std(axis=0), 1.5, atol=4 * 1.5 / np.sqrt(1000))

@@ -5,13 +5,15 @@ import pytest
 from linepose.errors import InputError
 from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
 from linepose.experiments.noise_models import (
+    IDENTIFIABILITY,
+    NOISE_MODELS,
+    WEIGHTS,
     chosen,
     fit_noise_models,
     identifiability_table,
     noise_model_table,
     weights_table,
 )
-from linepose.experiments.schemas import IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
 from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 SHORT = IndependenceSettings(n_walkers=24, n_burn_in=40, n_steps=30)

@@ -5,19 +5,18 @@ import pytest
 
 from linepose.errors import InputError
 from linepose.estimation.sampling import SamplingSettings
-from linepose.experiments.subsets import AngleRule, body_angles_rad, check_subset, draw_by_rules, subset_estimates
+from linepose.experiments.accepted import Accepted
+from linepose.experiments.subsets import (
+    AngleRule,
+    SubsetSettings,
+    check_subset,
+    chosen_subsets,
+    draw_by_rules,
+    subset_estimates,
+)
 
-SMALL = AngleRule("roll", 0.0, np.radians(1.9), 2)
-LARGE = AngleRule("roll", np.radians(3.3), np.radians(5.8), 3)
-
-
-def test_body_angles_average_on_the_circle(survey):
-    """Headings of 179 and -179 deg average to 180, not to 0."""
-    survey.euler_rad[0, :, 2] = np.radians(np.resize([179.0, -179.0], survey.n_points))
-    survey.euler_rad[1, 0] = np.nan
-    angles = body_angles_rad(survey)
-    assert abs(angles[0, 2]) == pytest.approx(np.pi, abs=1e-12)
-    np.testing.assert_allclose(angles[1], survey.euler_rad[1, 1], atol=1e-12)
+SMALL = AngleRule(angle="roll", maximum_deg=1.9, count=2)
+LARGE = AngleRule(angle="roll", minimum_deg=3.3, maximum_deg=5.8, count=3)
 
 
 def test_drawn_observations_obey_their_rules(survey):
@@ -36,12 +35,12 @@ def test_draw_is_a_function_of_the_seed(survey):
 
 
 def test_rules_that_overlap_never_draw_twice(survey):
-    wide = AngleRule("roll", 0.0, np.pi, 6)
+    wide = AngleRule(angle="roll", count=6)
     assert draw_by_rules(survey, [wide, wide], 1, "subset") == tuple(range(1, 13))
 
 
 def test_rule_that_selects_too_few_is_named(survey):
-    too_many = AngleRule("roll", 0.0, np.radians(1.9), 9)
+    too_many = AngleRule(angle="roll", maximum_deg=1.9, count=9)
     with pytest.raises(InputError, match=r"subsets\.flat: found 4 observations with 0 <= \|roll\| < 1\.9 deg"):
         draw_by_rules(survey, [too_many], 1, "subsets.flat")
 
@@ -88,3 +87,31 @@ def test_estimate_is_the_mean_and_its_sigma(model, request):
     assert row["neg_log_likelihood"] == pytest.approx(
         -likelihood.select(numbers).log_likelihood(likelihood.means[[n - 1 for n in numbers]].mean(axis=0)), rel=1e-6
     )
+
+
+@pytest.fixture
+def data(gaussian):
+    """Observation 7 of twelve was rejected."""
+    return Accepted(gaussian, gaussian.select([1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12]))
+
+
+def test_listed_and_drawn_subsets(data):
+    listed = SubsetSettings(observations=[5, 3, 9])
+    drawn = SubsetSettings(rules=[AngleRule(angle="roll", count=11)])
+    found = chosen_subsets(data, {"listed": listed, "drawn": drawn}, "robot.yaml: subsets")
+    assert found["listed"] == (5, 3, 9)
+    assert found["drawn"] == (1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12)
+
+
+@pytest.mark.parametrize(
+    ("section", "told"),
+    [
+        (SubsetSettings(observations=[1, 7]), "observation 7, which was rejected as an outlier"),
+        (SubsetSettings(observations=[1, 13]), "observation 13, which does not exist"),
+        (SubsetSettings(rules=[AngleRule(angle="roll", count=12)]), "11 observations with 0 <= |roll| < 180 deg"),
+    ],
+)
+def test_subset_that_cannot_be_used_names_its_key(data, section, told):
+    with pytest.raises(InputError) as caught:
+        chosen_subsets(data, {"bad": section}, "robot.yaml: subsets")
+    assert str(caught.value).startswith(f"robot.yaml: subsets.bad: found {told}")

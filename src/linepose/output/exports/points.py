@@ -8,8 +8,7 @@ import pandas as pd
 
 from linepose.config.platform import Platform
 from linepose.errors import InputError
-from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
-from linepose.experiments.schemas import MAPPING
+from linepose.experiments.mapping import MAPPING, PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.inputs.local_frame import GEODETIC, MAP_FRAME
 from linepose.output.exports.calibration import finished
 from linepose.output.exports.map_frame import MapFrame, projected_map, tangent_map

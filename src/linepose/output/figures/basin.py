@@ -25,7 +25,7 @@ _NAMES = {
 def basin(sweep: pd.DataFrame, region: Region) -> Figure:
     """One panel an optimiser: each start a cell over distance and angle, blue where it ended at the optimum.
 
-    `sweep` as in `schemas.BASIN`; the line bounds the claimed region.
+    `sweep` as in `BASIN`; the line bounds the claimed region.
     """
     rows = usable_rows(sweep, ["optimiser", "distance_m", "angle_rad", "success"], "basin.parquet")
     optimisers = list(dict.fromkeys(rows["optimiser"]))

@@ -8,7 +8,14 @@ from matplotlib.figure import Figure
 
 from linepose.config.platform import Platform
 from linepose.estimation.outliers import OUTLIERS
-from linepose.experiments import schemas
+from linepose.experiments.basin import BASIN, BASIN_SUMMARY
+from linepose.experiments.basin import SECTION as BASIN_SECTION
+from linepose.experiments.mapping import MAPPING, MAPPING_SUMMARY
+from linepose.experiments.mapping import SECTION as MAPPING_SECTION
+from linepose.experiments.repeatability import REPEATABILITY
+from linepose.experiments.repeatability import SECTION as REPEATABILITY_SECTION
+from linepose.experiments.splits import SPLITS
+from linepose.experiments.uncertainty import UNCERTAINTY
 from linepose.output.figures import (
     basin,
     corner_plot,
@@ -34,33 +41,33 @@ from linepose.survey.observations import OBSERVATIONS
 
 def _mapping(r: PlatformResults) -> Figure:
     points = r.table("estimated_points", ESTIMATED_POINTS)
-    mapped = r.table("mapping", schemas.MAPPING)
+    mapped = r.table("mapping", MAPPING)
     observations = r.table("observations", OBSERVATIONS)
     return mapping.mapping(mapped, points, observations, r.accepted()[0], r.true_points_m)
 
 
 def _angle_error(r: PlatformResults) -> Figure:
     points = r.table("estimated_points", ESTIMATED_POINTS)
-    mapped = r.table("mapping", schemas.MAPPING)
+    mapped = r.table("mapping", MAPPING)
     observations = r.table("observations", OBSERVATIONS)
     return mapping.angle_error(mapped, points, observations, _angle_deg(r), r.true_points_m)
 
 
 def _angle_deg(r: PlatformResults) -> float:
-    settings = r.platform.experiments.mapping
+    settings = MAPPING_SECTION.of(r.platform)
     return settings.perturbation_deg if settings else 0.0
 
 
 def _basin(r: PlatformResults) -> Figure:
-    settings = r.platform.experiments.basin
+    settings = BASIN_SECTION.of(r.platform)
     assert settings is not None  # left_out says so before
-    return basin.basin(r.table("basin", schemas.BASIN), settings.region())
+    return basin.basin(r.table("basin", BASIN), settings.region())
 
 
 def _basin_caption(r: PlatformResults) -> str:
-    settings = r.platform.experiments.basin
+    settings = BASIN_SECTION.of(r.platform)
     assert settings is not None
-    return basin.basin_caption(r.table("basin_summary", schemas.BASIN_SUMMARY), settings.region())
+    return basin.basin_caption(r.table("basin_summary", BASIN_SUMMARY), settings.region())
 
 
 def _sketch(r: PlatformResults) -> Figure:
@@ -69,7 +76,7 @@ def _sketch(r: PlatformResults) -> Figure:
 
 
 def _named_pair(r: PlatformResults) -> pd.DataFrame | None:
-    return r.table("repeatability", schemas.REPEATABILITY) if r.has("repeatability") else None
+    return r.table("repeatability", REPEATABILITY) if r.has("repeatability") else None
 
 
 def _trace(r: PlatformResults) -> Figure:
@@ -91,7 +98,7 @@ def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
 
 
 def _without_splits(platform: Platform) -> str:
-    settings = platform.experiments.repeatability
+    settings = REPEATABILITY_SECTION.of(platform)
     told = "This experiment was not asked for: experiments.repeatability has no splits in the platform's file."
     return "" if settings and settings.n_splits else told
 
@@ -160,8 +167,8 @@ FIGURES: Final = (
         "Uncertainty against observations",
         "Figure 9",
         "lines of the sigma of each pose parameter against the number of observations",
-        lambda r: uncertainty.uncertainty(r.table("uncertainty", schemas.UNCERTAINTY)),
-        lambda r: uncertainty.uncertainty_caption(r.table("uncertainty", schemas.UNCERTAINTY)),
+        lambda r: uncertainty.uncertainty(r.table("uncertainty", UNCERTAINTY)),
+        lambda r: uncertainty.uncertainty_caption(r.table("uncertainty", UNCERTAINTY)),
     ),
     CatalogueEntry(
         "corner",
@@ -194,7 +201,7 @@ FIGURES: Final = (
         "Figure 13",
         "the pattern's points projected to its plane before and after the calibration",
         _mapping,
-        lambda r: mapping.mapping_caption(r.table("mapping_summary", schemas.MAPPING_SUMMARY), r.accepted()[0]),
+        lambda r: mapping.mapping_caption(r.table("mapping_summary", MAPPING_SUMMARY), r.accepted()[0]),
         without("mapping"),
     ),
     CatalogueEntry(
@@ -203,7 +210,7 @@ FIGURES: Final = (
         "Figure 14",
         "the pattern's points projected with the calibrated pose and with one turned by a small angle",
         _angle_error,
-        lambda r: mapping.angle_error_caption(r.table("mapping_summary", schemas.MAPPING_SUMMARY), _angle_deg(r)),
+        lambda r: mapping.angle_error_caption(r.table("mapping_summary", MAPPING_SUMMARY), _angle_deg(r)),
         without("mapping"),
     ),
     CatalogueEntry(
@@ -252,8 +259,8 @@ FIGURES: Final = (
         "Repeatability",
         "",
         "histogram of the distance between poses from disjoint halves of the observations",
-        lambda r: repeatability.repeatability(r.table("splits", schemas.SPLITS), _named_pair(r)),
-        lambda r: repeatability.repeatability_caption(r.table("splits", schemas.SPLITS), _named_pair(r)),
+        lambda r: repeatability.repeatability(r.table("splits", SPLITS), _named_pair(r)),
+        lambda r: repeatability.repeatability_caption(r.table("splits", SPLITS), _named_pair(r)),
         _without_splits,
     ),
     *NOISE_FIGURES,

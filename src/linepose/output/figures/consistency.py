@@ -24,7 +24,7 @@ def consistency(table: pd.DataFrame) -> Figure:
     """Share of the pairs nearer than a distance, over the distance in sigmas, beside what right sigmas would give.
 
     Lines are random halves, marks single pairs at their distance's probability. `table` as in
-    `schemas.CONSISTENCY`.
+    `CONSISTENCY`.
     """
     rows = _known(table)
     figure = blank_figure(WIDE_IN, 4.2)

@@ -23,7 +23,7 @@ _PARAMETERS: Final = ("$r_x$", "$r_y$", "$r_z$", r"$\theta e_x$", r"$\theta e_y$
 def coverage(curve: pd.DataFrame) -> Figure:
     """A panel a platform and regime: how often regions hold the truth against what they state, with 95 % intervals.
 
-    `curve` as in `coverage_schemas.COVERAGE`.
+    `curve` as in `COVERAGE`.
     """
     rows = usable_rows(curve, ["platform", "regime", "noise_model", "nominal", "coverage"], "coverage.parquet")
     platforms, regimes = _names(rows, "platform"), _names(rows, "regime")
@@ -58,7 +58,7 @@ def coverage(curve: pd.DataFrame) -> Figure:
 def ranks(surveys: pd.DataFrame, noise_model: str) -> Figure:
     """A panel a platform and regime, a histogram for each parameter: where the truth ranks among the samples.
 
-    `surveys` as in `coverage_schemas.COVERAGE_SURVEYS`; the band is where 99 % of bars are if ranks are uniform.
+    `surveys` as in `COVERAGE_SURVEYS`; the band is where 99 % of bars are if ranks are uniform.
     """
     rows = usable_rows(surveys, ["platform", "regime", "noise_model", "failed"], "surveys.parquet")
     rows = rows[(rows["noise_model"] == noise_model) & ~rows["failed"]]
@@ -86,7 +86,7 @@ def ranks(surveys: pd.DataFrame, noise_model: str) -> Figure:
 def errors(summary: pd.DataFrame) -> Figure:
     """Root-mean-square errors of position (m) and rotation (°), a group of bars a regime, a bar a noise model.
 
-    `summary` as in `coverage_schemas.COVERAGE_SUMMARY`; one row of panels a platform.
+    `summary` as in `COVERAGE_SUMMARY`; one row of panels a platform.
     """
     rows = usable_rows(summary, ["platform", "regime", "noise_model"], "summary.parquet")
     rows = rows[rows[list(RMSE_COLUMNS)].notna().all(axis=1)]  # without those of which every estimate failed

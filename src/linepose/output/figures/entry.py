@@ -8,6 +8,7 @@ import pyarrow as pa
 from matplotlib.figure import Figure
 
 from linepose.config.platform import Platform
+from linepose.experiments.registry import SECTIONS
 from linepose.output.figures.results import PlatformResults
 from linepose.tables import texts
 
@@ -33,4 +34,4 @@ class CatalogueEntry:
 def without(key: str) -> Callable[[Platform], str]:
     """Why a platform has no figure of the experiment of this key: it was not asked for."""
     told = f"This experiment was not asked for: experiments.{key} is null in the platform's file."
-    return lambda platform: "" if getattr(platform.experiments, key) else told
+    return lambda platform: "" if SECTIONS[key].of(platform) else told

@@ -21,7 +21,7 @@ _NAMES: Final = ("a, shared by a view", "b, of a line alone", "g, of the pixel")
 def identifiability(table: pd.DataFrame, estimates: pd.DataFrame) -> Figure:
     """Posterior over prior sigma of each parameter as bars, and the intervals of the levels beside their prior.
 
-    `table` as in `schemas.IDENTIFIABILITY`, `estimates` as in `NOISE_MODELS`.
+    `table` as in `IDENTIFIABILITY`, `estimates` as in `NOISE_MODELS`.
     """
     rows = usable_rows(table, ["parameter", "prior_sigma", "posterior_sigma", "weakest_direction"], "identifiability")
     figure = blank_figure(WIDE_IN, 3.2)

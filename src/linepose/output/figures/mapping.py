@@ -30,7 +30,7 @@ def mapping(
 ) -> Figure:
     """Above all projections before (grey) and after (red) and the estimates; below one observation, 1-sigma ellipses.
 
-    `mapped` as in `schemas.MAPPING`, `estimated` as in `ESTIMATED_POINTS`, `observations` as
+    `mapped` as in `MAPPING`, `estimated` as in `ESTIMATED_POINTS`, `observations` as
     in `OBSERVATIONS` says where the viewer stands; true points (M, 3) in map coordinates are circled where known.
     """
     view, points = _view(estimated, observations)

@@ -2,7 +2,8 @@
 
 from typing import Final
 
-from linepose.experiments import schemas as schemas
+from linepose.experiments.consistency import CONSISTENCY, CONSISTENCY_SUMMARY
+from linepose.experiments.noise_models import IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
 from linepose.output.figures import consistency, identifiability, noise_models, weights
 from linepose.output.figures.entry import CatalogueEntry, without
 
@@ -13,9 +14,9 @@ NOISE_FIGURES: Final = (
         "",
         "each pose parameter from every set of observations under each noise model, with bars of two sigmas",
         lambda r: noise_models.noise_models(
-            r.table("noise_models", schemas.NOISE_MODELS), r.pose("hand_measured"), r.true_pose
+            r.table("noise_models", NOISE_MODELS), r.pose("hand_measured"), r.true_pose
         ),
-        lambda r: noise_models.noise_models_caption(r.table("noise_models", schemas.NOISE_MODELS)),
+        lambda r: noise_models.noise_models_caption(r.table("noise_models", NOISE_MODELS)),
         without("noise_models"),
     ),
     CatalogueEntry(
@@ -23,8 +24,8 @@ NOISE_FIGURES: Final = (
         "Agreement of disjoint observations",
         "",
         "cumulative distribution of the distance in sigmas between poses from disjoint observations, by noise model",
-        lambda r: consistency.consistency(r.table("consistency", schemas.CONSISTENCY)),
-        lambda r: consistency.consistency_caption(r.table("consistency_summary", schemas.CONSISTENCY_SUMMARY)),
+        lambda r: consistency.consistency(r.table("consistency", CONSISTENCY)),
+        lambda r: consistency.consistency_caption(r.table("consistency_summary", CONSISTENCY_SUMMARY)),
         without("noise_models"),
     ),
     CatalogueEntry(
@@ -32,8 +33,8 @@ NOISE_FIGURES: Final = (
         "Weights of the robust noise model",
         "",
         "bars of each view's weight above a matrix of each point's, observations across",
-        lambda r: weights.weights(r.table("weights", schemas.WEIGHTS)),
-        lambda r: weights.weights_caption(r.table("weights", schemas.WEIGHTS)),
+        lambda r: weights.weights(r.table("weights", WEIGHTS)),
+        lambda r: weights.weights_caption(r.table("weights", WEIGHTS)),
         without("noise_models"),
     ),
     CatalogueEntry(
@@ -42,10 +43,10 @@ NOISE_FIGURES: Final = (
         "",
         "bars of posterior over prior sigma of each parameter, and intervals of the inferred levels on their priors",
         lambda r: identifiability.identifiability(
-            r.table("identifiability", schemas.IDENTIFIABILITY), r.table("noise_models", schemas.NOISE_MODELS)
+            r.table("identifiability", IDENTIFIABILITY), r.table("noise_models", NOISE_MODELS)
         ),
         lambda r: identifiability.identifiability_caption(
-            r.table("identifiability", schemas.IDENTIFIABILITY), r.table("noise_models", schemas.NOISE_MODELS)
+            r.table("identifiability", IDENTIFIABILITY), r.table("noise_models", NOISE_MODELS)
         ),
         without("noise_models"),
     ),

@@ -21,7 +21,7 @@ _ROW_IN, _ROOM_IN = 0.24, 0.9
 def noise_models(table: pd.DataFrame, hand_pose: Floats, true_pose: Floats | None = None) -> Figure:
     """A panel a pose parameter, a row a set of observations, estimates with two sigmas side by side.
 
-    `table` as in `schemas.NOISE_MODELS`; the hand-measured pose (6,) and the true one are lines.
+    `table` as in `NOISE_MODELS`; the hand-measured pose (6,) and the true one are lines.
     """
     rows = usable_rows(table, ["noise_model", "set", *POSE_COLUMNS, *SIGMA_COLUMNS], "noise_models.parquet")
     sets, models = list(rows["set"].unique()), list(rows["noise_model"].unique())

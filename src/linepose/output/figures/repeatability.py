@@ -7,7 +7,7 @@ from scipy.stats import chi
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.experiments.split_summary import known_distances, sigma_factor
+from linepose.experiments.splits import known_distances, sigma_factor
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLACK, BLUE, GREY, HALF_PAGE_IN, RED, blank_figure, styled
@@ -17,7 +17,7 @@ from linepose.output.figures.style import BLACK, BLUE, GREY, HALF_PAGE_IN, RED, 
 def repeatability(splits: pd.DataFrame, pair: pd.DataFrame | None = None) -> Figure:
     """Histogram of the distance in sigmas between the poses of two halves, beside what right sigmas would give.
 
-    `splits` as in `schemas.SPLITS`; `pair` as in `REPEATABILITY` adds the distance of two named subsets.
+    `splits` as in `SPLITS`; `pair` as in `REPEATABILITY` adds the distance of two named subsets.
     """
     distance = _distances(splits)
     named = _named_distance(pair)

@@ -8,9 +8,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
 from linepose.arrays import Floats
-from linepose.experiments.subsets import body_angles_rad
 from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLACK, GREEN, GREY, HALF_PAGE_IN, blank_figure, few_ticks, styled
+from linepose.survey.body_angles import body_angles_rad
 from linepose.survey.observations import POSITION_COLUMNS, Survey
 
 # Shares of the survey's extent: from a mark to its label, and what a label keeps free around itself.

@@ -19,7 +19,7 @@ _NAMES = (("$r_x$", "$r_y$", "$r_z$"), (r"$\theta e_x$", r"$\theta e_y$", r"$\th
 def uncertainty(table: pd.DataFrame) -> Figure:
     """Sampled sigmas as marked lines, the curvature's as dashes; position above, rotation below.
 
-    `table` as in `schemas.UNCERTAINTY`.
+    `table` as in `UNCERTAINTY`.
     """
     rows = usable_rows(table, ["stage", "method", "n_observations", *SIGMA_COLUMNS], "uncertainty.parquet")
     figure = blank_figure(HALF_PAGE_IN, 3.9)

@@ -15,7 +15,7 @@ _COLUMNS = ("observation", "point", "view_weight", "point_weight", "removed")
 def weights(table: pd.DataFrame) -> Figure:
     """Bars of each view's weight above, a matrix of each point's below, observations across.
 
-    `table` as in `schemas.WEIGHTS`; observations that outlier removal took out are red.
+    `table` as in `WEIGHTS`; observations that outlier removal took out are red.
     """
     rows = usable_rows(table, _COLUMNS, "weights.parquet")
     views = rows.groupby("observation")[["view_weight", "removed"]].first()

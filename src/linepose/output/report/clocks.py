@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linepose.experiments.schemas import CLOCK_OFFSET
+from linepose.experiments.clock_offset import CLOCK_OFFSET
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sections import SectionOnPage, TableOnPage

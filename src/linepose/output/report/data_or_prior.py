@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from linepose.estimation.identifiability import WORDS
-from linepose.experiments.schemas import PRIOR
+from linepose.experiments.prior import PRIOR_TABLE
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sections import SectionOnPage, TableOnPage
@@ -27,7 +27,7 @@ def decided_section(results: PlatformResults) -> SectionOnPage | None:
     """The section; None where the result was not made."""
     if not results.has("prior"):
         return None
-    table = results.table("prior", PRIOR)
+    table = results.table("prior", PRIOR_TABLE)
     rows = [
         [
             _name(row["parameter"]),

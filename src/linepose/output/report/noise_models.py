@@ -8,8 +8,9 @@ from scipy.stats import chi
 
 from linepose.errors import InputError
 from linepose.estimation.noise_models import BALANCED, PUBLISHED, ROBUST, SHARED
-from linepose.experiments import schemas as schemas
-from linepose.experiments.noise_models import ALL, INLIERS
+from linepose.experiments.consistency import CONSISTENCY_SUMMARY
+from linepose.experiments.noise_models import ALL, IDENTIFIABILITY, INLIERS, NOISE_MODELS
+from linepose.experiments.noise_models import SECTION as NOISE_MODELS_SECTION
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sections import SectionOnPage, TableOnPage
@@ -23,11 +24,11 @@ _WELL_MATCHED: Final = (0.8, 1.25)  # factors on the sigmas that are no reason t
 
 def noise_models_section(results: PlatformResults) -> SectionOnPage | None:
     """The section of a platform whose file asks for the experiment, None otherwise."""
-    if not results.platform.experiments.noise_models:
+    if not NOISE_MODELS_SECTION.of(results.platform):
         return None
-    estimates = results.table("noise_models", schemas.NOISE_MODELS)
-    summary = results.table("consistency_summary", schemas.CONSISTENCY_SUMMARY)
-    identified = results.table("identifiability", schemas.IDENTIFIABILITY)
+    estimates = results.table("noise_models", NOISE_MODELS)
+    summary = results.table("consistency_summary", CONSISTENCY_SUMMARY)
+    identified = results.table("identifiability", IDENTIFIABILITY)
     anchor = f"{results.name}-noise-models"
     tables = [
         pose_table(f"{anchor}-poses", estimates),

@@ -4,7 +4,9 @@ import numpy as np
 import pandas as pd
 
 from linepose.arrays import Floats
-from linepose.experiments import schemas
+from linepose.experiments.leave_one_out import LEAVE_ONE_OUT
+from linepose.experiments.sensitivity import SENSITIVITY
+from linepose.experiments.subsets import SUBSETS
 from linepose.geometry.distance import pose_difference
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.output.figures.results import PlatformResults
@@ -19,7 +21,7 @@ def dependence_section(results: PlatformResults) -> SectionOnPage | None:
     tables: list[TableOnPage] = []
     told: list[str] = []
     if results.has("sensitivity"):
-        changes = results.table("sensitivity", schemas.SENSITIVITY)
+        changes = results.table("sensitivity", SENSITIVITY)
         changes = changes.iloc[1:]  # after the nominal one
         farthest = changes.loc[changes["distance_m"].idxmax()]
         told.append(
@@ -29,7 +31,7 @@ def dependence_section(results: PlatformResults) -> SectionOnPage | None:
         rows = _rows(changes["change"], changes, changes["mahalanobis"], pose)
         tables.append(_table(results.name, "settings", "Other settings and data", rows))
     if results.has("leave_one_out"):
-        without = results.table("leave_one_out", schemas.LEAVE_ONE_OUT)
+        without = results.table("leave_one_out", LEAVE_ONE_OUT)
         without = without.sort_values("influence", ascending=False)
         told.append(
             f"Without observation {without['left_out'].iloc[0]} it moves by {1e3 * without['distance_m'].iloc[0]:.0f} "
@@ -42,7 +44,7 @@ def dependence_section(results: PlatformResults) -> SectionOnPage | None:
             )
         )
     if results.has("subsets"):
-        subsets = results.table("subsets", schemas.SUBSETS)
+        subsets = results.table("subsets", SUBSETS)
         rows = _rows(subsets["subset"], subsets, pd.Series(np.nan, subsets.index), pose)
         tables.append(_table(results.name, "subsets", "Subsets of the observations", rows))
     if not tables:

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from linepose.experiments import schemas
+from linepose.experiments.sensitivity import SENSITIVITY
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sensitivity import dependence_section
@@ -28,7 +28,7 @@ def sensitivity():
 
 
 def test_changes_are_told_in_millimetres_and_the_estimate_itself_is_no_change(results):
-    write_table(sensitivity(), results.folder / "sensitivity.parquet", schemas.SENSITIVITY)
+    write_table(sensitivity(), results.folder / "sensitivity.parquet", SENSITIVITY)
     section = dependence_section(results)
     assert "focal length + 1 sigma moves the camera most: by 40 mm and 0.00°" in section.text
     settings = section.tables[0]

@@ -1,6 +1,6 @@
 from pathlib import Path
 
-from linepose.config.reference import json_schemas, reference_page
+from linepose.output.reference import json_schemas, reference_page
 
 ROOT = Path(__file__).parents[3]
 

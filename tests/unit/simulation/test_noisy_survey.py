@@ -5,14 +5,13 @@ import numpy as np
 import pytest
 
 from linepose.config.platform import load_platform
-from linepose.experiments.coverage import Cell
-from linepose.experiments.coverage_survey import NoiseLevels, draw_survey, levels_from_prior
 from linepose.likelihood.published import PublishedLikelihood
-from linepose.likelihood.shared import SharedPriors
+from linepose.simulation.noise_levels import NoiseLevels
+from linepose.simulation.noisy_survey import draw_survey
 from linepose.simulation.survey import faulty_observations, simulate_survey, without_faults
 
 PLATFORMS = Path(__file__).parents[3] / "config" / "platforms"
-SILENT = NoiseLevels(pixel=0.0, intrinsics=0.0)
+SILENT = NoiseLevels(pixel_level=0.0, intrinsics_level=0.0)
 
 
 @pytest.fixture(scope="module", params=["ladybird-sim", "shrimp-sim"])
@@ -39,7 +38,7 @@ def test_without_noise_the_truth_has_no_residuals(platform):
 @pytest.mark.statistical
 def test_pixel_noise_is_the_cameras(platform):
     camera = platform.intrinsics()
-    survey, truth = drawn(platform, replace(SILENT, pixel=1.0))
+    survey, truth = drawn(platform, SILENT.replaced(pixel_level=1.0))
     error = residuals(survey, camera, truth)
     count = np.isfinite(error[..., 0]).sum()
     for axis, sigma in enumerate((camera.sigmas.u_px, camera.sigmas.v_px)):
@@ -51,36 +50,18 @@ def test_noise_of_the_extraction_is_the_simulators(platform):
     settings = without_faults(platform.simulation)
     quiet = replace(settings, navigation_error=type(settings.navigation_error)())
     simulated, _ = simulate_survey(platform.intrinsics(), quiet, 3)
-    survey, truth = draw_survey(platform.intrinsics(), quiet, NoiseLevels(intrinsics=0.0), np.random.default_rng(3))
+    survey, truth = draw_survey(
+        platform.intrinsics(), quiet, NoiseLevels(intrinsics_level=0.0), np.random.default_rng(3)
+    )
     ours, theirs = (np.nanstd(residuals(s, platform.intrinsics(), truth), axis=(0, 1)) for s in (survey, simulated))
     np.testing.assert_allclose(ours, theirs, rtol=0.3)
 
 
 def test_shared_error_is_constant_in_a_view_and_of_the_reported_size(platform):
     quiet, _ = drawn(platform, SILENT)
-    noisy, _ = drawn(platform, replace(SILENT, shared=2.0))
+    noisy, _ = drawn(platform, SILENT.replaced(shared_level=2.0))
     error = np.concatenate([noisy.position_m - quiet.position_m, noisy.euler_rad - quiet.euler_rad], axis=-1)
     np.testing.assert_allclose(error - error[:, :1], 0, atol=1e-12)
     reported = np.sqrt(np.diag(quiet.covariance[0, 0]))
     scaled = np.std(error[:, 0] / reported, axis=0)
     assert np.all((scaled > 0.8) & (scaled < 3.8))  # 14 to 16 views: chi within a factor of 1.9
-
-
-def test_same_number_is_the_same_survey_for_every_noise_model(platform):
-    def cell(model, regime="white"):
-        simulation, camera = platform.simulation, platform.intrinsics()
-        return Cell("p", regime, model, camera, simulation, platform.start_pose(), NoiseLevels(white=1.0), 7)
-
-    first, second = (cell(model).survey(4)[0] for model in ("published", "balanced"))
-    np.testing.assert_array_equal(first.position_m, second.position_m)
-    assert not np.array_equal(first.position_m, cell("published").survey(5)[0].position_m)
-    assert not np.array_equal(first.position_m, cell("published", "shared").survey(4)[0].position_m)
-
-
-@pytest.mark.statistical
-def test_levels_are_the_priors():
-    random, priors = np.random.default_rng(1), SharedPriors()
-    levels = [levels_from_prior(random, priors) for _ in range(500)]
-    logs = np.log([[one.shared, one.white, one.pixel] for one in levels])
-    np.testing.assert_allclose(logs.mean(axis=0), np.log(0.5), atol=4 * 1.5 / np.sqrt(500))
-    np.testing.assert_allclose(logs.std(axis=0), 1.5, atol=4 * 1.5 / np.sqrt(1000))

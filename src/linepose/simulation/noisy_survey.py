@@ -7,16 +7,14 @@ of a point is that of the platform's extraction, across the line in lines and so
 pixels, which is what the noise models take it to be.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera
-from linepose.likelihood.shared import SharedPriors
 from linepose.simulation.faults import missing
 from linepose.simulation.navigation_error import navigation_errors
+from linepose.simulation.noise_levels import NoiseLevels
 from linepose.simulation.projection import Truth, exact_projections, pixel_of_direction
 from linepose.simulation.settings import NavigationErrorSettings, SimulationSettings
 from linepose.simulation.survey import faulty_observations, reported_covariance
@@ -26,34 +24,11 @@ from linepose.survey.observations import Survey
 _RATE_STEP_S = 1e-3
 
 
-@dataclass(frozen=True)
-class NoiseLevels:
-    """True noise of a survey: navigation errors in reported sigmas, pixels and intrinsics in the camera's sigmas.
-
-    Navigation errors are the sum of one constant in a view, one white from point to point, and a Gauss-Markov process.
-    Without a pixel level, the noise of points is that of the platform's extraction.
-    """
-
-    shared: float = 0.0
-    white: float = 0.0
-    correlated: float = 0.0
-    correlation_time_s: float = 60.0
-    pixel: float | None = None
-    intrinsics: float = 1.0
-
-
-def levels_from_prior(random: np.random.Generator, priors: SharedPriors) -> NoiseLevels:
-    """Levels as the shared-error model expects them before it has seen anything."""
-    levels = np.log(priors.level_median) + priors.level_log_sigma * random.standard_normal(3)
-    shared, white, pixel = np.exp(levels).tolist()
-    return NoiseLevels(shared=shared, white=white, pixel=pixel)
-
-
 def draw_survey(
     camera: Camera, settings: SimulationSettings, levels: NoiseLevels, random: np.random.Generator
 ) -> tuple[Survey, Floats]:
     """A survey of the drive's faultless observations, and the true pose (6,); the camera is as it is believed to be."""
-    deviation = levels.intrinsics * random.standard_normal(2)
+    deviation = levels.intrinsics_level * random.standard_normal(2)
     true_camera = camera.replaced(
         principal_point_px=camera.principal_point_px + deviation[0] * camera.sigmas.principal_point_px,
         focal_length_m=camera.focal_length_m + deviation[1] * camera.sigmas.focal_length_m,
@@ -62,13 +37,13 @@ def draw_survey(
     noise_u, noise_v = random.standard_normal((2, *truth.u_px.shape))
     seen = np.isfinite(truth.u_px) & ~missing(settings)
     crossing_s = np.where(seen, truth.time_s, 0.0)
-    if levels.pixel is None:
+    if levels.pixel_level is None:
         line_s = settings.extraction.sigma_line / settings.image.line_rate_hz
         when_s, u_px = crossing_s + line_s * noise_v, truth.u_px + settings.extraction.sigma_u_px * noise_u
     else:  # the camera stands off by the noise when the point seems to cross: earlier or later than it does
         rate = np.where(seen, _pixels_per_second(true_camera, settings, truth, crossing_s), 1.0)
-        when_s = crossing_s + levels.pixel * camera.sigmas.v_px * noise_v / rate
-        u_px = _projection(true_camera, settings, truth, when_s)[0] + levels.pixel * camera.sigmas.u_px * noise_u
+        when_s = crossing_s + levels.pixel_level * camera.sigmas.v_px * noise_v / rate
+        u_px = _projection(true_camera, settings, truth, when_s)[0] + levels.pixel_level * camera.sigmas.u_px * noise_u
     when_s = np.where(seen, when_s, 0.0)
     position, euler = body_poses(settings, when_s)
     errors = _errors(random, settings, levels, when_s)
@@ -101,13 +76,13 @@ def _scaled(settings: SimulationSettings, levels: NoiseLevels) -> NavigationErro
 
     position, euler = settings.reported_sigma.position_m, settings.reported_sigma.euler_rad
     return NavigationErrorSettings(
-        gauss_markov_position_m=triple(levels.correlated, position),
-        gauss_markov_euler_rad=triple(levels.correlated, euler),
+        gauss_markov_position_m=triple(levels.correlated_level, position),
+        gauss_markov_euler_rad=triple(levels.correlated_level, euler),
         correlation_time_s=levels.correlation_time_s,
-        white_position_m=triple(levels.white, position),
-        white_euler_rad=triple(levels.white, euler),
-        view_position_m=triple(levels.shared, position),
-        view_euler_rad=triple(levels.shared, euler),
+        white_position_m=triple(levels.white_level, position),
+        white_euler_rad=triple(levels.white_level, euler),
+        view_position_m=triple(levels.shared_level, position),
+        view_euler_rad=triple(levels.shared_level, euler),
     )
 
 

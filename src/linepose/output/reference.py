@@ -1,23 +1,35 @@
 """The configuration explained: a page for people and JSON schemas for editors, both made from the models.
 
-`python -m linepose.config.reference` writes docs/configuration.md and workflow/schemas/.
+`python -m linepose.output.reference` writes docs/configuration.md and workflow/schemas/.
 """
 
 import json
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, Field, create_model
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from linepose.config.platform import Platform
 from linepose.config.study import DatasetSection, Study
+from linepose.experiments.registry import ExperimentsSettings
 from linepose.settings import Settings
+
+# as linepose.config.platform has it, with what linepose.experiments.registry says of its `experiments`
+_Platform = create_model(
+    "Platform",
+    __base__=Platform,
+    __doc__=Platform.__doc__,
+    experiments=(
+        ExperimentsSettings,
+        Field(ExperimentsSettings(), description=Platform.model_fields["experiments"].description),
+    ),
+)
 
 _PARTS: dict[str, tuple[str, type[Settings]]] = {
     "config": ("config/config.yaml", Study),
-    "platform": ("config/platforms/NAME.yaml", Platform),
+    "platform": ("config/platforms/NAME.yaml", _Platform),
     "dataset": ("config/datasets/NAME.yaml", DatasetSection),
 }
 _INTRODUCTION = """# Configuration

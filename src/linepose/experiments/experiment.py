@@ -1,0 +1,121 @@
+"""What an experiment is: one entry, from which the configuration, the workflow and the reference page take all."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final, Generic, TypeVar
+
+import pandas as pd
+import pyarrow as pa
+from pydantic import Field, create_model
+
+from linepose.config.platform import Platform
+from linepose.experiments.inputs import Inputs
+from linepose.settings import Settings, validated
+
+Value = TypeVar("Value", covariant=True)
+
+ESTIMATE: Final = ("observations", "outliers", "optima", "samples")  # what most experiments start from
+
+
+def settings_class(name: str, fields: Mapping[str, Any]) -> type[Settings]:
+    """A closed class of settings with these fields, each a type and a pydantic field."""
+    model: type[Settings] = create_model(name, __base__=Settings, **fields)
+    return model
+
+
+@dataclass(frozen=True)
+class Section(Generic[Value]):
+    """A key below `experiments` in a platform's file: its value's type, the default, and what it means."""
+
+    key: str
+    value: type[Value]
+    default: Value | None
+    description: str
+
+    @property
+    def field(self) -> tuple[Any, Any]:
+        """The key as a field of a pydantic model; null leaves the experiment out."""
+        return self.value | None, Field(self.default, description=self.description)
+
+    @cached_property
+    def _model(self) -> type[Settings]:
+        return settings_class(self.key, {self.key: self.field})
+
+    def of(self, platform: Platform) -> Value | None:
+        """What a platform's file says, the default where it says nothing; None where the experiment is left out.
+
+        Raises InputError for what no such section has.
+        """
+        return self.read({key: value for key, value in platform.experiments.items() if key == self.key})
+
+    def values(self, platform: Platform) -> Any:
+        """The same as plain values, defaults included."""
+        known = {key: value for key, value in platform.experiments.items() if key == self.key}
+        return validated(self._model, known, "experiments").model_dump(mode="json")[self.key]
+
+    def read(self, values: Mapping[str, Any]) -> Value | None:
+        """The same from the mapping of this key alone."""
+        value: Value | None = getattr(validated(self._model, dict(values), "experiments"), self.key)
+        return value
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """An experiment on a platform's accepted observations.
+
+    `outputs` are its results by the name of their file, each with its schema, or with a function that takes the table
+    to its schema; `run` makes their tables. `section` says whether and how it is run, None where every platform has it;
+    `wanted` whether a section that is there asks for it. `reads` are further sections that it takes settings from.
+    `needs` names results of the platform: ones of `pipeline` by their rule inputs, ones of other experiments by file.
+    `study` names the keys of config.yaml that it takes. An experiment that `compares` has a section with a list
+    `platforms`: their observations and outliers are read too. `log`: it needs the raw navigation log. `truth`: it is
+    run for simulated platforms only. `every_noise_model`: it evaluates others than the platform's own. `cores`: how
+    many it can use; None for all there are, in batches that a killed run need not make again.
+    """
+
+    name: str
+    title: str
+    outputs: Mapping[str, pa.Schema | Callable[[pd.DataFrame], pa.Schema]]
+    run: Callable[[Inputs], Mapping[str, pd.DataFrame]]
+    section: Section[Any] | None = None
+    wanted: Callable[[Any], object] = bool
+    reads: tuple[Section[Any], ...] = ()
+    needs: tuple[str, ...] = ESTIMATE
+    study: tuple[str, ...] = ()
+    compares: bool = False
+    log: bool = False
+    truth: bool = False
+    every_noise_model: bool = False
+    cores: int | None = 1
+
+    @property
+    def module(self) -> str:
+        """Name of the module that this entry stands in."""
+        return self.run.__module__
+
+    @property
+    def sections(self) -> tuple[Section[Any], ...]:
+        """All sections that it takes settings from."""
+        return (*((self.section,) if self.section else ()), *self.reads)
+
+    @property
+    def in_batches(self) -> bool:
+        """Whether finished parts are kept until the whole is done."""
+        return self.cores is None
+
+    def is_wanted(self, platform: Platform) -> bool:
+        """Whether this experiment is run for a platform."""
+        if self.truth and platform.simulation is None:
+            return False
+        return self.section is None or bool(self.wanted(self.section.of(platform)))
+
+    def compared_with(self, platform: Platform) -> list[str]:
+        """Names of the platforms that it compares this one with."""
+        value = self.section.of(platform) if self.compares and self.section else None
+        return [] if value is None else list(value.platforms)
+
+    def schema(self, name: str, table: pd.DataFrame) -> pa.Schema:
+        """The schema of an output."""
+        schema = self.outputs[name]
+        return schema if isinstance(schema, pa.Schema) else schema(table)
