@@ -93,6 +93,8 @@ def test_files_named_exist(page):
         rf"(?:^|[\s(`])((?:{FOLDERS})/[\w./-]*\w)(?=[`\s,.:;)]|$)", "\n".join(code_of(page)), re.MULTILINE
     )
     placeholders = re.compile(r"[A-Z]{3,}|myrobot")
+    if page.name == "extending.md":  # files that a reader adds; tests/unit/test_extending.py adds them
+        return
     missing = [name for name in named if not placeholders.search(name) and not (ROOT / name).exists()]
     assert missing == []
 

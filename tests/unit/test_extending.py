@@ -1,0 +1,121 @@
+"""docs/extending.md adds one of each to a copy of the package, exactly as it stands there, and each is reachable."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(os.environ.get("ROOT_TO_EXTEND", Path(__file__).parents[2]))
+PAGE = (Path(__file__).parents[2] / "docs" / "extending.md").read_text()
+COPIED = ("src", "config", "workflow", "scripts", "docs", "Snakefile", "pyproject.toml", "README.md")
+EDIT = re.compile(r"^`([^`\n]+)`(?:, new)?:\n\n((?:```(?:python|diff|toml)\n.*?^```\n\n?)+)", re.MULTILINE | re.DOTALL)
+TABLE_ROW = re.compile(r"^\| an? (.+?) \| `(.+?)` \| `(.+?)` \|$", re.MULTILINE)
+
+
+IN_USE = """
+from pathlib import Path
+
+from linepose.config.platform import load_platform
+from linepose.estimation.noise_models import noise_model
+from linepose.simulation.survey import simulate_survey
+
+mine = load_platform(Path("config/platforms"), "mine")
+survey, _ = simulate_survey(mine.intrinsics(), mine.simulation, seed=5)
+likelihood = noise_model(mine.noise_model).make(survey, mine.intrinsics(), mine.hand_measured.pose)
+print(likelihood.survey.covariance[0, 0, 0, 0] / survey.covariance[0, 0, 0, 0])
+"""
+
+
+class Copy:
+    """A copy of what a clone holds, to be extended."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
+        for name in COPIED:
+            source = ROOT / name
+            if source.is_dir():
+                shutil.copytree(source, folder / name, ignore=ignored)
+            else:
+                shutil.copy(source, folder / name)
+        self.python("-c", "from setuptools import setup; setup()", "--quiet", "egg_info")
+
+    def extend(self, kind: str) -> set[str]:
+        """Make the edits of a section of the page; the paths that they touch."""
+        (section,) = re.findall(rf"^## An? {kind}\n(.*?)(?=^## |\Z)", PAGE, re.MULTILINE | re.DOTALL)
+        edits = EDIT.findall(section)
+        for path, blocks in edits:
+            for language, block in re.findall(r"```(\w+)\n(.*?)^```", blocks, re.MULTILINE | re.DOTALL):
+                self.edit(self.folder / path, language, block)
+        return {path for path, _ in edits}
+
+    def edit(self, path: Path, language: str, block: str) -> None:
+        """Write a new file, or make the change of a diff: its old rows stand in the file once."""
+        if language != "diff":
+            assert not path.exists()
+            path.write_text(block)
+            return
+        rows = block.splitlines(keepends=True)
+        old, new = ("".join(row[1:] or "\n" for row in rows if row[0] != other) for other in "+-")
+        text = path.read_text()
+        assert text.count(old) == 1, old
+        path.write_text(text.replace(old, new))
+
+    def python(self, *arguments: str) -> str:
+        """What Python prints with the copy as the package; it must end well."""
+        done = subprocess.run(
+            [sys.executable, *arguments],
+            cwd=self.folder,
+            env=os.environ | {"PYTHONPATH": str(self.folder / "src")},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    def linepose(self, *arguments: str) -> str:
+        """What the command line prints."""
+        return self.python("-c", "from linepose.cli import main; main()", *arguments)
+
+    def reference(self) -> str:
+        """The page of all keys, as `make reference` makes it."""
+        (module,) = re.findall(r"python -m (linepose\S+reference)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+        self.python("-m", module)
+        return (self.folder / "docs" / "configuration.md").read_text()
+
+    def platform(self, **values: object) -> None:
+        """A platform `mine` of the copy, like the simulated one."""
+        text = yaml.safe_dump({"like": "ladybird-sim"} | values)
+        (self.folder / "config" / "platforms" / "mine.yaml").write_text(text)
+        (self.folder / "config" / "config.yaml").write_text(yaml.safe_dump({"platforms": ["mine"]}))
+
+
+@pytest.fixture
+def copy(tmp_path) -> Copy:
+    return Copy(tmp_path)
+
+
+def extended(copy: Copy, kind: str) -> Copy:
+    """The copy with one more of a kind; no file was touched but those that the page's table names."""
+    named = {one: {new, entry} for one, new, entry in TABLE_ROW.findall(PAGE)}
+    touched = copy.extend(kind)
+    assert touched == named[kind]
+    modules = [path for path in touched if path.endswith(".py")]
+    copy.python("-m", "ruff", "check", *modules)
+    copy.python("-m", "ruff", "format", "--check", "--diff", *modules)
+    return copy
+
+
+def test_noise_model(copy):
+    extended(copy, "noise model").platform(noise_model="doubled")
+    assert "doubled: the paper's, with the reported sigmas doubled" in copy.reference()
+    assert float(copy.python("-c", IN_USE)) == pytest.approx(4)
+    planned = copy.python("-m", "snakemake", "--dry-run", "--cores", "1", "results/mine/optima.parquet")
+    assert "results/compiled/doubled.txt" in planned
