@@ -20,12 +20,13 @@ import pandas as pd
 
 from linepose.config.platform import load_platform
 from linepose.inputs.labels.labels import read_labels
+from linepose.inputs.navigation.log_file import read_navigation_log
 from linepose.inputs.observed_points import detected_points, refined_points, select_scans
 from linepose.inputs.targets.refine import METHODS
 from linepose.simulation import envi
 from linepose.simulation.record import write_survey
 from linepose.simulation.render import render
-from linepose.survey.navigation_log import associate_poses, interpolated_pose, read_navigation_log
+from linepose.survey.navigation_log import associate_poses, interpolated_pose
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 
 PLATFORMS = ("ladybird-sim", "shrimp-sim")

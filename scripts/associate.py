@@ -6,7 +6,7 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.source import LabelledViewsSection
+    from linepose.inputs.source import LabelledViewsSection
     from linepose.pipeline.load import map_frame_table, read_reported, with_navigation
     from linepose.pipeline.result_schemas import MAP_FRAME, NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS
     from linepose.survey.navigation import median_sigma_table

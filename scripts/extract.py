@@ -6,7 +6,7 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.source import LabelledViewsSection
+    from linepose.inputs.source import LabelledViewsSection
     from linepose.pipeline.load import read_points
     from linepose.pipeline.result_schemas import POINTS, SCAN_POINTS
     from linepose.tables import write_table

@@ -22,12 +22,12 @@ from linepose.check.scans import scan_findings
 from linepose.check.views import view_findings
 from linepose.config.platform import Platform, load_platform, platform_faults, read_yaml
 from linepose.config.project import Project
-from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.config.study import check_study
 from linepose.errors import InputError, LineposeError
 from linepose.experiments.registry import compared_platforms, experiment_faults
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.number_files import read_numbers
+from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.pipeline.load import read_log, read_reported, with_navigation
 from linepose.pipeline.project_folder import CONFIG, find_project, load_platform_project
 from linepose.simulation.survey import simulate_survey

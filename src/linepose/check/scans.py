@@ -7,12 +7,12 @@ import pandas as pd
 
 from linepose.check.finding import Finding, error, numbers, of_fault, of_faults, ok, warning
 from linepose.check.labels import sensor_findings
-from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.inputs.labels import read_point_labels
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.scans.line_times import line_times_of
 from linepose.inputs.scans.scan_files import scan_size
+from linepose.inputs.source import ScansSection
 
 
 def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[list[Finding], pd.DataFrame | None]:

@@ -8,10 +8,10 @@ import pandas as pd
 
 from linepose.check.finding import Finding, error, of_fault, of_faults
 from linepose.check.labels import pose_findings, repeated_findings, sensor_findings
-from linepose.config.source import LabelledViewsSection
 from linepose.errors import InputError
 from linepose.inputs.labels.labelled_views import read_labelled_views, select_views
 from linepose.inputs.number_files import check_microseconds, read_numbers
+from linepose.inputs.source import LabelledViewsSection
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 
 _COLUMNS: Final = ("point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS)

@@ -7,8 +7,8 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 
 def label(name: Name, project: ProjectFolder = HERE) -> None:
     """Open a window to click the pattern's points over each scan; what was clicked is kept when it is closed."""
-    from linepose.config.source import ScansSection
     from linepose.errors import InputError
+    from linepose.inputs.source import ScansSection
     from linepose.pipeline.api import recorded_folder
     from linepose.pipeline.project_folder import find_project, load_platform_project
 

@@ -40,8 +40,7 @@ def new(
     navigation_format: Annotated[
         str | None,
         typer.Option(
-            help="Format of the navigation log, for scans: novatel, sbet, rosbag, resonon or table (docs/formats.md).",
-            show_default="table: CSV or Parquet",
+            help="Format of the navigation log, for scans (docs/formats.md).", show_default="our own CSV or Parquet"
         ),
     ] = None,
     navigation: Annotated[str | None, typer.Option(help="File of the navigation log, for scans.")] = None,

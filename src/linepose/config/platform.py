@@ -19,10 +19,10 @@ from pydantic import (
 from linepose.arrays import Floats
 from linepose.config.map_frame import MapFrameSection
 from linepose.config.outline import OutlineSection
-from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName
 from linepose.geometry.camera import Camera
+from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.likelihood.prior import PosePrior, pose_prior
 from linepose.settings import Settings, faults_of, validated
 from linepose.simulation.settings import SimulationSettings, settings_from_dict

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from linepose.errors import InputError
 
 TimeUnit = Literal["s", "ms", "us", "ns"]
+TimeScale = Literal["gps", "unix"]
 
 GPS_EPOCH_US: Final = 315_964_800_000_000  # 1980-01-06 as Unix time
 WEEK_US: Final = 604_800_000_000

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
-from linepose.config.navigation_formats import TimeScale
 from linepose.errors import InputError
 from linepose.inputs import gps_time
+from linepose.inputs.gps_time import TimeScale
 
 _FEWEST_COLUMNS: Final = 7
 

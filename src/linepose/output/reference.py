@@ -14,6 +14,7 @@ from pydantic_core import PydanticUndefined
 from linepose.config.platform import Platform
 from linepose.config.study import DatasetSection, Study
 from linepose.experiments.registry import ExperimentsSettings
+from linepose.inputs.navigation.registry import SectionsOfFormats
 from linepose.settings import Settings
 
 # as linepose.config.platform has it, with what linepose.experiments.registry says of its `experiments`
@@ -79,6 +80,9 @@ def _default(field: FieldInfo) -> str:
 
 
 def _sections(annotation: Any) -> list[type[BaseModel]]:
+    for marker in getattr(annotation, "__metadata__", ()):
+        if isinstance(marker, SectionsOfFormats):
+            return list(marker.sections())
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     return [section for part in getattr(annotation, "__args__", ()) for section in _sections(part)]

@@ -5,16 +5,17 @@ from pathlib import Path
 import pandas as pd
 
 from linepose.config.platform import Platform
-from linepose.config.source import LabelledViewsSection, ScansSection
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.labels import read_point_labels
 from linepose.inputs.labels.labelled_views import read_labelled_views, select_views
 from linepose.inputs.navigation import log_covariances, read_navigation
+from linepose.inputs.navigation.covariance_file import read_covariances
 from linepose.inputs.observed_points import detected_points, refined_points, select_scans
 from linepose.inputs.scans.line_times import line_times_of
 from linepose.inputs.scans.scan_files import read_scan
+from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.inputs.targets.refine import METHODS
-from linepose.survey.navigation import NavigationCovariances, associate_covariances, read_covariances
+from linepose.survey.navigation import NavigationCovariances, associate_covariances
 from linepose.survey.navigation_log import POSE_AT, NavigationLog, associate_poses
 from linepose.survey.observations import check_determined, survey_from_table
 

@@ -3,12 +3,12 @@ import pandas as pd
 import pytest
 
 from linepose.errors import InputError
+from linepose.inputs.navigation.covariance_file import read_covariances
 from linepose.survey.navigation import (
     NAVIGATION_SIGMA,
     NavigationCovariances,
     associate_covariances,
     median_sigma_table,
-    read_covariances,
 )
 from linepose.survey.observations import COVARIANCE_COLUMNS, survey_from_table
 

@@ -5,12 +5,12 @@ from scipy.spatial.transform import Rotation
 
 from linepose.errors import InputError
 from linepose.geometry import rotations
+from linepose.inputs.navigation.log_file import read_navigation_log
 from linepose.survey.navigation_log import (
     NavigationLog,
     associate_poses,
     interpolated_pose,
     nearest_pose,
-    read_navigation_log,
 )
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 

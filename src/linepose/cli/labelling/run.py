@@ -7,11 +7,11 @@ import pandas as pd
 
 from linepose.cli.labelling.session import Session, resumed, save, table_of
 from linepose.cli.labelling.window import LabelWindow
-from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.inputs.labels.labels import read_labels
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.scans.scan_files import read_intensity
+from linepose.inputs.source import ScansSection
 from linepose.inputs.targets.refine import METHODS, Refine
 
 

@@ -1,21 +1,9 @@
-"""Navigation logs as devices write them: one format a file, chosen by name in the platform file.
+"""Navigation logs as devices write them: one format a file, with its settings and its reader, chosen by its name.
 
-`read_navigation(source.navigation, folder)` reads any of them; to add one, see docs/formats.md.
+`read_navigation(source.navigation, folder)` reads any of them; to add one, see docs/formats.md. Names are imported when
+they are first used: configuration needs the settings of one format only.
 """
 
-from linepose.config.navigation_formats import GeodeticSection, NavigationFormat, NavigationFormatSection
-from linepose.inputs.navigation.reading import log_covariances, read_navigation
-from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
+import lazy_loader
 
-__all__ = [
-    "Covariances",
-    "GeodeticSection",
-    "NavigationFormat",
-    "NavigationFormatSection",
-    "NavigationRecord",
-    "Poses",
-    "geodetic_record",
-    "local_record",
-    "log_covariances",
-    "read_navigation",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

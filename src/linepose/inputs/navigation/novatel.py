@@ -12,14 +12,15 @@ import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
+from pydantic import Field
 
 from linepose.arrays import Floats
-from linepose.config.navigation_formats import NavigationFormat, NovatelSection
 from linepose.errors import InputError
 from linepose.inputs import axes, gps_time
+from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, nearest_rows
 
 Row = tuple[float, ...]
@@ -40,6 +41,15 @@ class Messages:
     rows: dict[str, list[Row]] = field(default_factory=dict)
     unusable: int = 0
     unknown_bytes: int = 0
+
+
+class NovatelSection(GeodeticSection):
+    """Keys of the format `novatel`."""
+
+    format: Literal["novatel"] = Field(description="`novatel`: ASCII or binary logs of a NovAtel receiver.")
+    poses: Literal["INSPVA", "INSPVAX"] | None = Field(
+        None, description="Messages that the poses are taken from; if not given, the kind that the log has most of."
+    )
 
 
 def read(section: NovatelSection, folder: Path) -> NavigationRecord:

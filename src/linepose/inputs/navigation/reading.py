@@ -2,15 +2,16 @@
 
 from pathlib import Path
 
-from linepose.config.navigation_formats import NavigationFormatSection
-from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.inputs import gps_time
+from linepose.inputs.navigation.covariance_file import read_covariances
+from linepose.inputs.navigation.format import NavigationFormatSection
+from linepose.inputs.navigation.log_file import read_navigation_log
 from linepose.inputs.navigation.record import NavigationRecord
 from linepose.inputs.navigation.registry import navigation_format
 from linepose.inputs.scans.line_times import first_time_us
-from linepose.survey.navigation import NavigationCovariances, read_covariances
-from linepose.survey.navigation_log import read_navigation_log
+from linepose.inputs.source import ScansSection
+from linepose.survey.navigation import NavigationCovariances
 
 
 def read_navigation(section: ScansSection | NavigationFormatSection | str, folder: Path) -> NavigationRecord:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
-from linepose.config.navigation_formats import GeodeticSection
 from linepose.errors import InputError
 from linepose.inputs.axes import turned
 from linepose.inputs.local_frame import (
@@ -20,6 +19,7 @@ from linepose.inputs.local_frame import (
     tangent_frame,
     utm_crs,
 )
+from linepose.inputs.navigation.format import GeodeticSection
 from linepose.survey.navigation import NavigationCovariances
 from linepose.survey.navigation_log import NavigationLog
 

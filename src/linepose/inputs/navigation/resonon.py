@@ -6,13 +6,25 @@ positive with the right wing up, the opposite of ours. The files hold no covaria
 """
 
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
-from linepose.config.navigation_formats import NavigationFormat, ResononSection, TimeScale
+from pydantic import Field
+
+from linepose.inputs.gps_time import TimeScale
 from linepose.inputs.location_files import location_rows, location_unix_us
+from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.record import NavigationRecord, Poses, geodetic_record
 
 _USE_COLUMN: Final = 9
+
+
+class ResononSection(GeodeticSection):
+    """Keys of the format `resonon`."""
+
+    format: Literal["resonon"] = Field(description="`resonon`: location files (.lcf) of a Resonon airborne system.")
+    time_scale: TimeScale = Field(
+        "gps", description="Clock of the files: seconds since 1980-01-06 with leap seconds counted, or Unix time."
+    )
 
 
 def read(section: ResononSection, folder: Path) -> NavigationRecord:
@@ -20,7 +32,7 @@ def read(section: ResononSection, folder: Path) -> NavigationRecord:
     return geodetic_record([_poses(path, section.time_scale) for path in section.paths(folder)], [], section)
 
 
-FORMAT: Final = NavigationFormat("resonon", ResononSection, read)
+FORMAT: Final = NavigationFormat("resonon", ResononSection, read, has_covariances=False)
 
 
 def _poses(path: Path, time_scale: TimeScale) -> Poses:

@@ -8,16 +8,17 @@ import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
+from pydantic import Field, PositiveFloat
 from scipy.spatial.transform import Rotation
 
 from linepose.arrays import Floats
-from linepose.config.navigation_formats import NavigationFormat, RosbagSection
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.inputs import axes
+from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.record import (
     Covariances,
     NavigationRecord,
@@ -35,6 +36,29 @@ _KEYS: Final = {ODOMETRY: "odometry_topic", FIX: "fix_topic", IMU: "imu_topic"}
 _NO_FIX: Final = -1
 _UNKNOWN_COVARIANCE: Final = 0
 _NOT_UNIT: Final = 1e-3
+
+
+class RosbagSection(GeodeticSection):
+    """Keys of the format `rosbag`."""
+
+    format: Literal["rosbag"] = Field(description="`rosbag`: a ROS 1 or ROS 2 bag.")
+    odometry_topic: str | None = Field(
+        None, description="Topic of nav_msgs/Odometry; if not given, the bag's only one, if it has one."
+    )
+    fix_topic: str | None = Field(
+        None, description="Topic of sensor_msgs/NavSatFix, where there is no odometry; if not given, the only one."
+    )
+    imu_topic: str | None = Field(
+        None, description="Topic of sensor_msgs/Imu with orientation, for NavSatFix; if not given, the only one."
+    )
+    orientation_covariance: Literal["fixed_axes", "roll_pitch_yaw"] = Field(
+        "fixed_axes",
+        description="What a bag's covariance of the orientation is of: small turns about east, north, up (REP-103), or "
+        "roll, pitch, yaw, as the NovAtel driver fills it in.",
+    )
+    maximum_fix_gap_s: PositiveFloat = Field(
+        1.0, description="Longest time between two NavSatFix over which the position is interpolated (s)."
+    )
 
 
 def read(section: RosbagSection, folder: Path) -> NavigationRecord:

@@ -7,19 +7,34 @@ is 10 doubles: seconds of the week, north, east, down (m), three velocities, rol
 """
 
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
+from pydantic import Field
 
 from linepose.arrays import Floats
-from linepose.config.navigation_formats import NavigationFormat, SbetSection
 from linepose.errors import InputError
 from linepose.inputs import axes, gps_time
+from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat, with_contents
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record
 
 _TRAJECTORY: Final = 17
 _RMS: Final = 10
 _ARC_MINUTE: Final = np.pi / 180 / 60
+
+
+class SbetSection(GeodeticSection):
+    """Keys of the format `sbet`."""
+
+    format: Literal["sbet"] = Field(description="`sbet`: an SBET trajectory (Applanix, Inertial Explorer) and its RMS.")
+    rms: str | None = Field(None, description="File of the trajectory's RMS (smrmsg), or a pattern, like `file`.")
+    gps_week: int | None = Field(
+        None, ge=0, description="The GPS week of the first record; if not given, that of the scans' first time stamp."
+    )
+
+    def files(self, folder: Path) -> set[Path]:
+        """Every file that is read."""
+        return super().files(folder) | (with_contents(folder.glob(self.rms)) if self.rms else set())
 
 
 def read(section: SbetSection, folder: Path) -> NavigationRecord:

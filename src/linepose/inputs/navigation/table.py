@@ -3,7 +3,7 @@
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 import pyarrow as pa
@@ -11,18 +11,76 @@ import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
+from pydantic import Field, model_validator
 
 from linepose.arrays import Floats
-from linepose.config.navigation_formats import Names, NavigationFormat, TableSection
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.inputs import axes, gps_time
 from linepose.inputs.local_frame import projected_frame, tangent_frame
+from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
+from linepose.settings import Settings
 
 _BRIEFLY: Final = 120
 _PARQUET: Final = {".parquet", ".pq"}
 _ENU_SIGMAS: Final = [1, 0, 2]  # standard deviations of east, north, up in the order north, east, down
+
+
+Names = tuple[str, str, str]
+
+
+class ColumnsSection(Settings):
+    """Which column holds what; a file without a heading has the columns "1", "2", ..."""
+
+    time: str = Field("time_us", description="Time, in `time_unit` and `time_scale`.")
+    week: str | None = Field(None, description="GPS week, where the time is `gps_week` and not all is of one week.")
+    position: Names = Field(
+        ("north_m", "east_m", "down_m"), description="Position, in the order that `coordinates` says."
+    )
+    attitude: Names = Field(("roll_rad", "pitch_rad", "yaw_rad"), description="Roll, pitch, yaw.")
+    sigma_position: Names | None = Field(
+        None, description="One standard deviation (m) north, east, down; of `coordinates: enu` east, north, up."
+    )
+    sigma_attitude: Names | None = Field(
+        None, description="One standard deviation of roll, pitch, yaw, in `angle_unit`; both sigmas or none."
+    )
+
+
+class TableSection(GeodeticSection):
+    """Keys of the format `table`."""
+
+    format: Literal["table"] = Field(description="`table`: CSV or Parquet with a column map.")
+    columns: ColumnsSection = Field(ColumnsSection(), description="Which column holds what.")
+    heading: bool = Field(True, description="Whether the first row of a CSV file names the columns.")
+    delimiter: str = Field(",", description="What stands between the cells of a CSV file.", min_length=1, max_length=1)
+    time_unit: Literal["s", "ms", "us", "ns"] = Field("us", description="Unit of the time, unless it is `iso`.")
+    time_scale: Literal["unix", "iso", "gps", "gps_week"] = Field(
+        "unix",
+        description="`unix`: UTC since 1970; `iso`: UTC as text, 2026-05-01T12:00:00.25Z; `gps`: since 1980-01-06, "
+        "leap seconds counted; `gps_week`: since the start of the GPS week.",
+    )
+    gps_week: int | None = Field(
+        None, ge=0, description="The GPS week of the first row, for `gps_week`; if not given, that of the scans."
+    )
+    coordinates: Literal["ned", "enu", "geodetic"] = Field(
+        "ned",
+        description="Position as north, east, down (m), east, north, up (m), or latitude, longitude, ellipsoidal "
+        "height (m).",
+    )
+    attitude_axes: Literal["ned", "enu"] = Field(
+        "ned",
+        description="Angles of a body x forward, y right, z down in north, east, down, or of x forward, y left, z up "
+        "in east, north, up (ROS).",
+    )
+    angle_unit: Literal["degrees", "radians"] = Field("radians", description="Of roll, pitch, yaw and their sigmas.")
+    latitude_unit: Literal["degrees", "radians"] = Field("degrees", description="Of latitude and longitude.")
+
+    @model_validator(mode="after")
+    def _has_both_sigmas(self) -> "TableSection":
+        if (self.columns.sigma_position is None) != (self.columns.sigma_attitude is None):
+            raise ValueError("columns.sigma_position and columns.sigma_attitude, or none of them")
+        return self
 
 
 def read(section: TableSection, folder: Path) -> NavigationRecord:
@@ -38,7 +96,7 @@ def read(section: TableSection, folder: Path) -> NavigationRecord:
     return record if frame is None else replace(record, crs=frame.crs, origin=frame.origin)
 
 
-FORMAT: Final = NavigationFormat("table", TableSection, read)
+FORMAT: Final = NavigationFormat("table", TableSection, read, has_covariances=False)
 
 
 def _read_file(path: Path, section: TableSection) -> tuple[Poses, Covariances]:

@@ -8,13 +8,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from linepose.config.navigation_formats import TimeScale
-from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.inputs import gps_time
+from linepose.inputs.gps_time import TimeScale
 from linepose.inputs.location_files import location_rows, location_unix_us
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.scans.scan_files import LineTimes, check_line_times, read_times, times_path
+from linepose.inputs.source import ScansSection
 
 Stamps = NDArray[np.int64]
 

@@ -10,10 +10,10 @@ import numpy as np
 import pandas as pd
 
 from linepose.arrays import Floats
-from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.inputs.observed_points import SCAN_POINTS, select_scans
 from linepose.inputs.scans.scan_files import Intensity, read_intensity
+from linepose.inputs.source import ScansSection
 from linepose.inputs.targets.board_in_scan import BoardInScan, fit_board
 from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.results import PlatformResults

@@ -17,9 +17,9 @@ from linepose.cli.labelling import label, label_platform
 from linepose.cli.labelling.run import session_of
 from linepose.cli.labelling.session import save
 from linepose.cli.labelling.window import LabelWindow
-from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.inputs.scans.scan_files import read_intensity
+from linepose.inputs.source import ScansSection
 from linepose.inputs.targets.refine import METHODS
 from linepose.survey.pattern import N_POINTS
 from unit.inputs.targets.conftest import draw

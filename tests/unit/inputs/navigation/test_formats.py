@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
-from linepose.config.navigation_formats import NovatelSection, ResononSection, RosbagSection, SbetSection, TableSection
 from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation.novatel import NovatelSection
+from linepose.inputs.navigation.resonon import ResononSection
+from linepose.inputs.navigation.rosbag import RosbagSection
+from linepose.inputs.navigation.sbet import SbetSection
+from linepose.inputs.navigation.table import TableSection
 from unit.inputs import novatel_writer, writers
 from unit.inputs.drive import ORIGIN
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from linepose.config.navigation_formats import NovatelSection, RosbagSection
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.inputs.axes import matrix_from_enu_flu
 from linepose.inputs.navigation import read_navigation
-from linepose.inputs.navigation.novatel import read_messages
+from linepose.inputs.navigation.novatel import NovatelSection, read_messages
+from linepose.inputs.navigation.rosbag import RosbagSection
 from unit.inputs import novatel_writer
 
 NED_FROM_ENU = np.array([[0, 1, 0], [1, 0, 0], [0, 0, -1]])

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 import yaml
 
-from linepose.config.navigation_formats import SECTIONS
 from linepose.config.platform import Platform, load_platform
 from linepose.errors import InputError
 from linepose.inputs.navigation import read_navigation
-from linepose.inputs.navigation.registry import OWN
+from linepose.inputs.navigation.registry import format_names, navigation_format, own_formats
 from linepose.settings import Settings, validated
 
 PAGE = (Path(__file__).parents[4] / "docs" / "formats.md").read_text()
@@ -81,7 +80,10 @@ def test_format_that_is_brought_is_closed_too(tmp_path, installed):
             {"format": "bad", "file": "a"},
             r"entry point bad of linepose.navigation_formats: found '/', expected a Navigation",
         ),
-        ({"file": "a"}, r"source.navigation.format: found None, expected one of table, novatel, sbet, rosbag, resonon"),
+        (
+            {"file": "a"},
+            r"source.navigation.format: found None, expected one of bad, novatel, resonon, ",
+        ),
         ({"format": "sbet", "file": "a", "weak": 3}, r"mine.yaml: source.navigation.weak: found an unknown key"),
         (
             {"format": "table", "file": "a", "columns": {"tim": "t"}},
@@ -103,19 +105,19 @@ def test_wrong_keys_are_one_line(tmp_path, installed, navigation, told):
     assert "\n" not in str(error.value)
 
 
-def test_every_format_is_known_by_its_name():
-    assert set(OWN) == set(SECTIONS)
-    for name, own in OWN.items():
-        assert own.name == name
-        assert own.section is SECTIONS[name]
-        assert f"### {name}:" in PAGE
+def test_our_own_formats_are_entry_points_as_any_other():
+    assert format_names() == [own.name for own in own_formats()]
+    for own in own_formats():
+        assert navigation_format(own.name) is own
+        assert own.section.__module__ == own.read.__module__ == f"linepose.inputs.navigation.{own.name}"
+        assert f"### {own.name}:" in PAGE
 
 
 def test_examples_of_the_page_are_configurations():
     examples = [yaml.safe_load(block)["navigation"] for block in blocks("yaml")]
     assert [one["format"] for one in examples] == ["table", "novatel", "sbet", "rosbag", "resonon"]
     for one in examples:
-        validated(SECTIONS[one["format"]], one, "docs/formats.md")
+        validated(navigation_format(one["format"]).section, one, "docs/formats.md")
 
 
 def test_path_takes_covariances_from_a_file_and_a_format_from_the_log(tmp_path):
@@ -124,4 +126,7 @@ def test_path_takes_covariances_from_a_file_and_a_format_from_the_log(tmp_path):
 
 
 def test_section_is_frozen():
-    assert all(issubclass(section, Settings) and section.model_config["frozen"] for section in SECTIONS.values())
+    assert all(
+        issubclass(section, Settings) and section.model_config["frozen"]
+        for section in [one.section for one in own_formats()]
+    )

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from linepose.config.navigation_formats import ResononSection
 from linepose.errors import InputError
 from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation.resonon import ResononSection
 from unit.inputs import writers
 from unit.inputs.drive import ORIGIN
 

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from linepose.config.navigation_formats import RosbagSection
 from linepose.errors import InputError
 from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation.rosbag import RosbagSection
 from unit.inputs import writers
 from unit.inputs.drive import ORIGIN
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from linepose.config.navigation_formats import SbetSection
-from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.inputs import gps_time
 from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation.sbet import SbetSection
+from linepose.inputs.source import ScansSection
 from unit.inputs import writers
 from unit.inputs.drive import ORIGIN
 

@@ -2,10 +2,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from linepose.config.navigation_formats import TableSection
 from linepose.errors import InputError
 from linepose.inputs.local_frame import geodetic_from_local
 from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation.table import TableSection
 from unit.inputs.drive import ORIGIN
 
 FIRST_US = 1_700_000_000_250_000

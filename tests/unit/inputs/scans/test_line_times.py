@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from linepose.config.source import ScansSection
 from linepose.errors import InputError
 from linepose.inputs.scans.line_times import first_time_us, line_times_of
 from linepose.inputs.scans.scan_files import read_scan
+from linepose.inputs.source import ScansSection
 from linepose.simulation import envi
 
 START_US = 1_700_000_000_250_000

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field, PositiveInt, model_validator
 
-from linepose.config.navigation_formats import Navigation
+from linepose.inputs.navigation.registry import Navigation
 from linepose.settings import Settings
 
 

@@ -1,0 +1,62 @@
+"""The navigation covariances in a file of their own: rows of time (us) and a row-major 12x12 matrix."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+from linepose.inputs.number_files import check_microseconds, read_numbers
+from linepose.survey.navigation import NavigationCovariances
+
+_SIZE: Final = 12
+_ASYMMETRY: Final = 1e-9  # as a correlation: both halves are printed alike
+_NEGATIVE: Final = 1e-5  # as an eigenvalue of the correlations: what rounding to six printed digits may leave
+
+
+def read_covariances(path: Path, attitude_columns: Sequence[int]) -> NavigationCovariances:
+    """Covariances of a file with rows of time (us) and a row-major 12x12 matrix, position in its rows 0-2.
+
+    `attitude_columns` are the three rows and columns of roll, pitch and yaw. Raises InputError naming the row of a
+    time that does not increase, or of a matrix that is not symmetric or not positive semi-definite.
+    """
+    time_us, numbers = read_numbers(path, 1 + _SIZE * _SIZE, "time (us) and 144 covariances")
+    check_microseconds(time_us, path)
+    backwards = np.flatnonzero(np.diff(time_us) <= 0)
+    if backwards.size:
+        row = int(backwards[0]) + 1
+        raise InputError(
+            f"{path}, row {row + 1}, column 1",
+            f"time {time_us[row]}",
+            f"a time after the row before it ({time_us[row - 1]})",
+            "sort the rows by time and remove repeated ones",
+        )
+    keep = [0, 1, 2, *attitude_columns]
+    covariance = numbers.reshape(-1, _SIZE, _SIZE)[:, keep][:, :, keep]
+    for row, matrix in enumerate(covariance):
+        _check_covariance(matrix, keep, f"{path}, row {row + 1}")
+    return NavigationCovariances(time_us, covariance, str(path))
+
+
+def _check_covariance(matrix: Floats, names: Sequence[int], place: str) -> None:
+    """Check a covariance (6, 6), whose rows and columns are `names` in the file's matrix."""
+    if not np.all(np.isfinite(matrix)):
+        raise InputError(place, "a covariance that is no number", "36 finite numbers", "remove or mend the row")
+    scale = np.sqrt(np.abs(np.diag(matrix)))
+    asymmetric = np.argwhere(np.abs(matrix - matrix.T) > _ASYMMETRY * np.outer(scale, scale))
+    if asymmetric.size:
+        i, j = asymmetric[0]
+        at, mirrored = (names[i], names[j]), (names[j], names[i])
+        found = f"covariance {matrix[i, j]:g} at {at} and {matrix[j, i]:g} at {mirrored}"
+        raise InputError(place, found, "a symmetric matrix", "check the column order, or remove the row")
+    unit = np.where(scale > 0, scale, 1.0)
+    lowest = float(np.linalg.eigvalsh(matrix / np.outer(unit, unit))[0])
+    if lowest < -_NEGATIVE:
+        raise InputError(
+            place,
+            f"a covariance whose correlations have the eigenvalue {lowest:g}",
+            "a positive semi-definite matrix",
+            "check navigation.covariance_columns, or remove the row",
+        )

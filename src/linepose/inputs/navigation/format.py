@@ -1,0 +1,72 @@
+"""What a navigation format is: its name, its settings, and what reads its logs."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field
+
+from linepose.errors import InputError
+from linepose.settings import Settings
+
+if TYPE_CHECKING:
+    from linepose.inputs.navigation.record import NavigationRecord
+
+
+class NavigationFormatSection(Settings):
+    """Keys of every navigation format; a format adds its own, and narrows `format` to its name."""
+
+    format: str
+    file: str = Field(
+        description="Log below the data set's folder, or a pattern of logs (`run-*.gps`) that follow in time."
+    )
+
+    def paths(self, folder: Path) -> list[Path]:
+        """The logs, sorted by name; raises InputError where there is none."""
+        found = sorted(folder.glob(self.file))
+        if not found:
+            remedy = "restore it, or correct source.navigation.file"
+            raise InputError(str(folder / self.file), "no such file", "a navigation log", remedy)
+        return found
+
+    def files(self, folder: Path) -> set[Path]:
+        """Every file that is read; those of a log that is a folder one by one."""
+        return with_contents(folder.glob(self.file))
+
+
+class GeodeticSection(NavigationFormatSection):
+    """Keys of the formats whose positions are latitude, longitude and ellipsoidal height (WGS 84)."""
+
+    frame: Literal["tangent", "projected"] = Field(
+        "tangent",
+        description="Where positions are taken: in the plane that touches the Earth at `origin`, true in lengths, or "
+        "in the projected `crs`.",
+    )
+    origin: tuple[float, float, float] | None = Field(
+        None,
+        description="Origin of the tangent plane: latitude, longitude (deg), ellipsoidal height (m); if not given, the "
+        "log's first record.",
+    )
+    crs: str | None = Field(
+        None, description="The projected CRS, as in EPSG:32633; if not given, the UTM zone of the log's first record."
+    )
+
+
+@dataclass(frozen=True)
+class NavigationFormat:
+    """A navigation format: its name, the model of its keys, and what reads the logs of a data set's folder.
+
+    `read` takes the section and the folder and returns a linepose.inputs.navigation.NavigationRecord.
+    `has_covariances`: whether such logs as a rule hold covariances, so that no file of their own is needed.
+    """
+
+    name: str
+    section: type[NavigationFormatSection]
+    read: "Callable[[Any, Path], NavigationRecord]"
+    has_covariances: bool = True
+
+
+def with_contents(paths: Iterable[Path]) -> set[Path]:
+    """The paths, and instead of each folder the files below it."""
+    return {file for path in paths for file in (path.rglob("*") if path.is_dir() else [path]) if not file.is_dir()}

@@ -1,0 +1,72 @@
+"""Our own table of body poses, which a path in `source.navigation` names: Parquet, or CSV with a heading."""
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+from linepose.inputs.number_files import check_microseconds
+from linepose.survey.navigation_log import NavigationLog
+from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
+
+_COLUMNS: Final = ("time_us", *POSITION_COLUMNS, *EULER_COLUMNS)
+_FEWEST_ROWS: Final = 2
+
+
+def read_navigation_log(path: Path) -> NavigationLog:
+    """The log of a Parquet file, or a CSV file with a heading: time_us, north_m, east_m, down_m, roll_rad, ...
+
+    Raises InputError naming the row of a time that does not increase or a value that is no number.
+    """
+    table = _read_columns(path)
+    time_us = table["time_us"].to_numpy()
+    check_microseconds(time_us, path)
+    backwards = np.flatnonzero(np.diff(time_us) <= 0)
+    if backwards.size:
+        row = int(backwards[0]) + 1
+        expected = f"a time after the row before it ({time_us[row - 1]})"
+        raise InputError(f"{path}, row {row + 1}, time_us", f"time {time_us[row]}", expected, "sort the rows by time")
+    position = np.stack([table[name].to_numpy() for name in POSITION_COLUMNS], axis=-1)
+    euler = np.stack([table[name].to_numpy() for name in EULER_COLUMNS], axis=-1)
+    _check_values(path, np.hstack([position, euler]))
+    return NavigationLog(time_us, position, euler, str(path))
+
+
+def _read_columns(path: Path) -> pa.Table:
+    if not path.is_file():
+        raise InputError(str(path), "no such file", "the navigation log", "restore it, or correct source.navigation")
+    types = {name: pa.float64() for name in _COLUMNS} | {"time_us": pa.int64()}
+    try:
+        if path.suffix == ".parquet":
+            table = pq.read_table(path)
+        else:
+            table = pa_csv.read_csv(path, convert_options=pa_csv.ConvertOptions(column_types=types))
+        missing = [name for name in _COLUMNS if name not in table.column_names]
+        if missing:
+            expected = f"columns {', '.join(_COLUMNS)}"
+            raise InputError(str(path), f"no column {', '.join(missing)}", expected, "name the columns so")
+        table = table.select(list(_COLUMNS)).cast(pa.schema(list(types.items())))
+    except (pa.ArrowException, UnicodeDecodeError) as error:
+        found = " ".join(str(error).split())
+        raise InputError(str(path), found, "Parquet, or CSV with a heading", "mend the file") from None
+    if table.num_rows < _FEWEST_ROWS:
+        raise InputError(str(path), f"{table.num_rows} rows", "two or more", "restore the log")
+    return table
+
+
+def _check_values(path: Path, values: Floats) -> None:
+    broken = np.argwhere(~np.isfinite(values))
+    if len(broken):
+        row, column = broken[0]
+        raise InputError(
+            f"{path}, row {row + 1}, {_COLUMNS[1 + column]}", "no number", "a number in each row", "remove the row"
+        )
+    far = np.flatnonzero(np.any(np.abs(values[:, 3:]) > 2 * np.pi, axis=1))
+    if far.size:
+        place = f"{path}, row {far[0] + 1}, {EULER_COLUMNS[0]} to {EULER_COLUMNS[-1]}"
+        raise InputError(place, f"angles {values[far[0], 3:].tolist()}", "radians", "convert degrees to radians")
