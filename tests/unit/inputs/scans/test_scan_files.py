@@ -62,7 +62,7 @@ def test_many_chunks_give_the_same_mean(tmp_path, cube, interleave, monkeypatch)
 _GROWTH = """
 import sys
 from pathlib import Path
-from linepose.extraction.scans import spectral_mean
+from linepose.inputs.scans.scan_files import spectral_mean
 def peak_mb():
     return int(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]) / 1024
 before = peak_mb()
