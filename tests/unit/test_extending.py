@@ -119,3 +119,10 @@ def test_noise_model(copy):
     assert float(copy.python("-c", IN_USE)) == pytest.approx(4)
     planned = copy.python("-m", "snakemake", "--dry-run", "--cores", "1", "results/mine/optima.parquet")
     assert "results/compiled/doubled.txt" in planned
+
+
+def test_experiment(copy):
+    extended(copy, "experiment").platform(experiments={"headings": {"n_sectors": 8}})
+    assert "experiments.headings.n_sectors" in copy.reference()
+    planned = copy.python("-m", "snakemake", "--dry-run", "--cores", "1", "results/mine/headings.parquet")
+    assert "rule headings:" in planned
