@@ -1,0 +1,72 @@
+"""The library's rooms, ground first: each imports only from those before it, and no module stands loose."""
+
+import ast
+from pathlib import Path
+
+import linepose
+
+PACKAGE = Path(linepose.__file__).parent
+LOOSE = ("errors", "arrays", "tables", "settings")
+ROOMS = (
+    *LOOSE,
+    "geometry",
+    "survey",
+    "simulation",
+    "likelihood",
+    "adjustment",
+    "estimation",
+    "inputs",
+    "config",
+    "pipeline",
+    "experiments",
+    "check",
+    "output",
+    "cli",
+    "paper",
+)
+
+
+def imported(path):
+    """The rooms that a file imports from, wherever in the file it does, with the lines."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module == "linepose":
+            yield from ((name.name, node.lineno) for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and (node.module or "").startswith("linepose."):
+            yield node.module.split(".")[1], node.lineno
+        elif isinstance(node, ast.Import):
+            yield from ((n.name.split(".")[1], node.lineno) for n in node.names if n.name.startswith("linepose."))
+
+
+def against_the_order(package):
+    """Imports of a room that comes later, as `file:line: what is imported`."""
+    found = []
+    for path in sorted(package.rglob("*.py")):
+        room = path.relative_to(package).parts[0].removesuffix(".py")
+        if room == "__init__":
+            continue
+        allowed = ROOMS[: ROOMS.index(room) + 1]
+        found += [
+            f"{path.relative_to(package)}:{line}: {other}"
+            for other, line in imported(path)
+            if other in ROOMS and other not in allowed
+        ]
+    return found
+
+
+def test_rooms_import_only_from_those_before_them():
+    assert against_the_order(PACKAGE) == []
+
+
+def test_no_module_stands_loose_and_every_room_is_listed():
+    files = {path.stem for path in PACKAGE.glob("*.py")} - {"__init__"}
+    assert files == set(LOOSE)
+    folders = {path.name for path in PACKAGE.iterdir() if path.is_dir() and any(path.glob("*.py"))}
+    assert folders <= set(ROOMS)
+
+
+def test_an_import_from_a_later_room_is_found(tmp_path):
+    (tmp_path / "survey").mkdir()
+    (tmp_path / "survey" / "points.py").write_text(
+        "from linepose.geometry.pose import x\n\n\ndef f():\n    from linepose.config import study\n    import linepose.cli.app\n"
+    )
+    assert against_the_order(tmp_path) == ["survey/points.py:5: config", "survey/points.py:6: cli"]
