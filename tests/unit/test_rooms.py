@@ -67,6 +67,7 @@ def test_no_module_stands_loose_and_every_room_is_listed():
 def test_an_import_from_a_later_room_is_found(tmp_path):
     (tmp_path / "survey").mkdir()
     (tmp_path / "survey" / "points.py").write_text(
-        "from linepose.geometry.pose import x\n\n\ndef f():\n    from linepose.config import study\n    import linepose.cli.app\n"
+        "from linepose.geometry.pose import x\n\n\n"
+        "def f():\n    from linepose.config import study\n    import linepose.cli.app\n"
     )
     assert against_the_order(tmp_path) == ["survey/points.py:5: config", "survey/points.py:6: cli"]

@@ -7,8 +7,8 @@ from typing import Final
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
+from linepose.config.project import CONFIG
 from linepose.errors import InputError
-from linepose.pipeline.project_folder import CONFIG
 from linepose.tables import atomic_write
 
 _STUDY: Final = """# What is run. Every key, its unit and default: docs/configuration.md

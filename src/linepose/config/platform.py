@@ -3,7 +3,7 @@
 import difflib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import yaml
 from pydantic import (
@@ -23,10 +23,12 @@ from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName
 from linepose.geometry.camera import Camera
 from linepose.inputs.source import LabelledViewsSection, ScansSection
-from linepose.likelihood.prior import PosePrior, pose_prior
 from linepose.settings import Settings, faults_of, validated
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
 from linepose.survey.hand_measured import HandMeasured
+
+if TYPE_CHECKING:  # what computes is imported when it is needed: configuration is read by every command
+    from linepose.likelihood.prior import PosePrior
 
 AttitudeColumn = Annotated[int, Field(ge=3, le=11)]
 
@@ -125,11 +127,13 @@ class Platform(Settings):
         """Covariance of the hand-measured pose with a rotation vector (6, 6)."""
         return self.hand_measured.covariance
 
-    def hand_measurement(self) -> PosePrior:
+    def hand_measurement(self) -> "PosePrior":
         """The hand-measured pose with its covariance, whether it counts as a prior or not."""
+        from linepose.likelihood.prior import pose_prior
+
         return pose_prior(self.start_pose(), self.start_covariance())
 
-    def pose_prior(self) -> PosePrior | None:
+    def pose_prior(self) -> "PosePrior | None":
         """The pose's prior; None where the data decide alone."""
         return self.hand_measurement() if self.prior == "hand_measured" else None
 

@@ -3,12 +3,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from linepose.config.platform import Platform, load_platform
 from linepose.config.study import DatasetSection, Study, check_study, load_dataset
 from linepose.errors import InputError
 from linepose.survey.datasets import find_dataset
+
+CONFIG: Final = Path("config") / "config.yaml"
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Final
 
-import emcee
 import numpy as np
 
 from linepose.arrays import Floats
@@ -51,6 +50,8 @@ def diagnose_samples(samples: Floats, section: str = "sampling") -> ChainDiagnos
     n_moved = int(moved.sum())
     time = np.full(n_parameters, float(n_steps))
     if n_moved:
+        import emcee
+
         time = np.maximum(emcee.autocorr.integrated_time(samples[:, moved], tol=0, quiet=True), 1.0)
     r_hat = split_r_hat(samples)
     warnings = []

@@ -7,7 +7,6 @@ two almost equal rotations have almost opposite vectors.
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
-from scipy.stats import chi2
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
@@ -68,7 +67,9 @@ def mahalanobis_between(
 
 def p_value(distance: ArrayLike, degrees_of_freedom: int = N_PARAMETERS) -> Floats:
     """Chance of a Mahalanobis distance at least as large where only noise separates the poses; (...) to (...)."""
-    return np.asarray(chi2.sf(np.asarray(distance, dtype=float) ** 2, degrees_of_freedom))
+    from scipy.special import chdtrc  # chi2.sf, without what scipy.stats takes to import
+
+    return np.asarray(chdtrc(degrees_of_freedom, np.asarray(distance, dtype=float) ** 2))
 
 
 def check_covariance(covariance: ArrayLike, name: str = "pose covariance") -> Floats:

@@ -14,7 +14,6 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
 
-import numba
 import pandas as pd
 import pyarrow as pa
 from tqdm import tqdm
@@ -84,6 +83,8 @@ def _workers(task: Task, count: int) -> ProcessPoolExecutor:
 def _begin(task: Task, parent: int) -> None:
     global _task
     _task = task
+    import numba
+
     numba.set_num_threads(1)
     exit_with_parent(parent)
 

@@ -1,13 +1,12 @@
 """A project on disk: the folder that holds config/config.yaml, found from anywhere below it."""
 
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from linepose.config.platform import read_yaml
+from linepose.config.project import CONFIG as CONFIG
 from linepose.config.project import Compared, Project, compared_with_none, load_project
 from linepose.errors import InputError
-
-CONFIG: Final = Path("config") / "config.yaml"
 
 
 def find_project(start: Path | str = ".") -> Path:

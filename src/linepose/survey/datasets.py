@@ -5,9 +5,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-import pooch
-import requests
-
 from linepose.errors import InputError
 
 _PATIENCE_S: Final = 5.0
@@ -57,6 +54,8 @@ def check_dataset(folder: Path, sha256: Mapping[str, str | None]) -> dict[str, s
 
 def can_be_reached(url: str) -> bool:
     """Whether a server answers for this address, within a few seconds."""
+    import requests
+
     try:
         return requests.head(url, timeout=_PATIENCE_S, allow_redirects=True).ok
     except (requests.RequestException, OSError):
@@ -67,6 +66,9 @@ def download_dataset(
     name: str, base_url: str, sha256: Mapping[str, str], urls: Mapping[str, str], folder: Path, searched: Sequence[Path]
 ) -> None:
     """Download a data set into a folder, every file checked; raises InputError where it cannot be had."""
+    import pooch
+    import requests
+
     fetcher = pooch.create(path=folder, base_url=base_url, registry=dict(sha256), urls=dict(urls), retry_if_failed=1)
     for file in sha256:
         try:
