@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
@@ -17,6 +18,10 @@ EDIT = re.compile(r"^`([^`\n]+)`(?:, new)?:\n\n((?:```(?:python|diff|toml)\n.*?^
 TABLE_ROW = re.compile(r"^\| an? (.+?) \| `(.+?)` \| `(.+?)` \|$", re.MULTILINE)
 
 
+GIVEN = (
+    *("--focal-length-mm", "8.2", "--pixel-pitch-um", "7.407407", "--pixels", "648"),
+    *("--position-m", "0.2", "0", "-0.8", "--euler-deg", "-56", "0", "-90"),
+)
 IN_USE = """
 from pathlib import Path
 
@@ -28,6 +33,15 @@ mine = load_platform(Path("config/platforms"), "mine")
 survey, _ = simulate_survey(mine.intrinsics(), mine.simulation, seed=5)
 likelihood = noise_model(mine.noise_model).make(survey, mine.intrinsics(), mine.hand_measured.pose)
 print(likelihood.survey.covariance[0, 0, 0, 0] / survey.covariance[0, 0, 0, 0])
+"""
+READ = """
+from pathlib import Path
+
+from linepose.config.platform import load_platform
+from linepose.inputs.navigation import read_navigation
+
+record = read_navigation(load_platform(Path("config/platforms"), "mine").source, Path())
+print(*record.log.position_m[0], record.log.euler_rad[0, 2])
 """
 
 
@@ -43,6 +57,10 @@ class Copy:
                 shutil.copytree(source, folder / name, ignore=ignored)
             else:
                 shutil.copy(source, folder / name)
+        self.install()
+
+    def install(self) -> None:
+        """Let the copy's entry points be found."""
         self.python("-c", "from setuptools import setup; setup()", "--quiet", "egg_info")
 
     def extend(self, kind: str) -> set[str]:
@@ -119,6 +137,19 @@ def test_noise_model(copy):
     assert float(copy.python("-c", IN_USE)) == pytest.approx(4)
     planned = copy.python("-m", "snakemake", "--dry-run", "--cores", "1", "results/mine/optima.parquet")
     assert "results/compiled/doubled.txt" in planned
+
+
+def test_navigation_format(copy):
+    extended(copy, "navigation format").install()
+    navigation = {"format": "tum", "file": "trajectory.txt"}
+    source = {"kind": "scans", "dataset": "mine", "navigation": navigation, "covariances": "covariances.csv"}
+    copy.platform(source=source, simulation=None)
+    (copy.folder / "trajectory.txt").write_text("1700000000.25 1 2 3 0 0 0 1\n1700000000.50 2 2 3 0 0 0 1\n")
+    assert "`tum`: time, position and quaternion of each pose." in copy.reference()
+    north, east, down, yaw = np.array(copy.python("-c", READ).split(), dtype=float)
+    np.testing.assert_allclose([north, east, down, yaw], [2, 1, -3, np.pi / 2], atol=1e-12)
+    copy.linepose("new", "other", *GIVEN, "--source", "scans", "--navigation-format", "tum")
+    assert "format: tum" in (copy.folder / "config" / "platforms" / "other.yaml").read_text()
 
 
 def test_experiment(copy):
