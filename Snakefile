@@ -15,30 +15,16 @@ report: "workflow/report/workflow.rst"
 
 
 include: "workflow/rules/common.smk"
-include: "workflow/rules/fetch.smk"
-include: "workflow/rules/compile.smk"
-include: "workflow/rules/check_data.smk"
-include: "workflow/rules/check_readable.smk"
-include: "workflow/rules/simulate.smk"
-include: "workflow/rules/extract.smk"
-include: "workflow/rules/measure_extraction.smk"
-include: "workflow/rules/associate.smk"
-include: "workflow/rules/reject_outliers.smk"
-include: "workflow/rules/optimise.smk"
-include: "workflow/rules/sample.smk"
-include: "workflow/rules/diagnose.smk"
-include: "workflow/rules/residuals.smk"
+include: "workflow/rules/inputs.smk"
+include: "workflow/rules/simulation.smk"
+include: "workflow/rules/calibration.smk"
 include: "workflow/rules/experiments.smk"
-include: "workflow/rules/coverage.smk"
-include: "workflow/rules/figures.smk"
+include: "workflow/rules/outputs.smk"
 
 
-if os.path.isdir("config/paper"):
+if Path("config/paper").is_dir():
 
     include: "workflow/rules/paper.smk"
-
-
-include: "workflow/rules/report.smk"
 
 
 rule all:

@@ -17,6 +17,7 @@ with stage(snakemake) as log:
     from linepose.experiments.coverage_table import coverage_table
     from linepose.output.figures import coverage as figures
     from linepose.output.figures.style import save
+    from linepose.pipeline.file_list import write_file_list
     from linepose.tables import atomic_write, read_table, write_csv, write_table
 
     cells = [read_table(path, COVERAGE_SURVEYS) for path in snakemake.input.cells]
@@ -33,4 +34,5 @@ with stage(snakemake) as log:
     save(figures.errors(summary), folder / "errors")
     for model in dict.fromkeys(surveys["noise_model"]):
         save(figures.ranks(surveys, model), folder / f"ranks_{model}")
+    write_file_list(folder, Path(snakemake.output.files))
     log.info("%d surveys in %d cells", len(surveys), len(summary))

@@ -8,6 +8,7 @@ with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.output.figures.render import render_figures
     from linepose.output.figures.results import PlatformResults
+    from linepose.pipeline.file_list import write_file_list
     from linepose.pipeline.result_schemas import FIGURES
     from linepose.tables import write_table
 
@@ -18,9 +19,10 @@ with stage(snakemake) as log:
         threshold_px=snakemake.params.outliers["threshold_px"],
         data_folder=Path(snakemake.params.folder),
     )
-    folder = Path(snakemake.output[0])
+    folder = Path(snakemake.output.figures)
     index = render_figures(results, folder)
     write_table(index, folder / "index.parquet", FIGURES)
+    write_file_list(folder, Path(snakemake.output.files))
     log.info("%d figures", (index["left_out"] == "").sum())
     for _, row in index[index["left_out"] != ""].iterrows():
         log.info("%s left out: %s", row["figure"], row["left_out"])

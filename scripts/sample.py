@@ -9,6 +9,7 @@ with stage(snakemake) as log:
     from linepose.config.study import sampling_settings
     from linepose.estimation.outliers import stage_observations
     from linepose.estimation.sampling import sample, stage_seed
+    from linepose.pipeline.file_list import write_file_list
     from linepose.pipeline.platform_likelihood import platform_likelihood
     from linepose.pipeline.progress import shown
     from linepose.pipeline.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, SAMPLES, with_parameters
@@ -27,5 +28,6 @@ with stage(snakemake) as log:
     for name, numbers in stages.items():
         seed = stage_seed(snakemake.params.seed, len(numbers))
         chain = sample(likelihood.select(numbers), optima.loc[name], seed, settings, shown())
-        write_table(sample_table(chain, names), Path(snakemake.output[0]) / f"{name}.parquet", schema)
+        write_table(sample_table(chain, names), Path(snakemake.output.samples) / f"{name}.parquet", schema)
         log.info("%s: %d samples, acceptance %.2f", name, chain.log_likelihood.size, chain.acceptance_fraction.mean())
+    write_file_list(Path(snakemake.output.samples), Path(snakemake.output.files))

@@ -179,7 +179,9 @@ def test_file_that_is_missing_from_own_data_is_one_line(copied):
     assert {path: content for path, content in copied.results().items() if path in before} == before
 
 
-def test_simulated_platforms_run_when_the_field_data_cannot_be_had(tmp_path):
+@pytest.fixture
+def without_field_data(tmp_path):
+    """A project with a platform whose data set is in no data folder, at a server that does not answer."""
     project = Project(tmp_path)
     project.configure(
         STUDY | {"platforms": ["ladybird", "tiny"], "datasets": {"ladybird": "config/datasets/nowhere.yaml"}},
@@ -188,11 +190,37 @@ def test_simulated_platforms_run_when_the_field_data_cannot_be_had(tmp_path):
     (tmp_path / "config" / "datasets" / "nowhere.yaml").write_text(
         "base_url: http://127.0.0.1:9/\nsha256: {nav_covs.csv: " + "a" * 64 + "}\n"
     )
-    run = project.run("--dry-run")
+    return project
+
+
+def test_offline_leaves_out_platforms_whose_data_set_is_not_here(without_field_data):
+    run = without_field_data.run("--dry-run", "--config", "offline=true")
     assert run.returncode == 0, run.stderr
-    told = "data set ladybird: not in data and not to be downloaded; only the other platforms run: tiny"
+    told = "data set ladybird: not in data, and `offline` forbids to download it; only the other platforms run: tiny"
     assert len(lines_with(told, run.stderr + run.stdout)) == 1, run.stderr
     assert "results/ladybird/" not in run.stdout + run.stderr
+
+
+def test_data_set_that_cannot_be_had_is_one_line_that_says_what_to_do(without_field_data):
+    run = without_field_data.run("results/datasets/ladybird.csv")
+    assert run.returncode != 0
+    told = lines_with("linepose.fetch_ladybird: data set ladybird: found no copy in data/ladybird", run.stderr)
+    assert len(told) == 1, run.stderr
+    assert told[0].endswith("or leave its platforms out: snakemake --config offline=true")
+    assert "Traceback" not in run.stderr
+
+
+def test_folder_from_which_a_file_was_lost_is_made_again(copied):
+    results = copied.folder / "results" / "tiny"
+    before = copied.results()
+    (results / "mcmc" / "all.parquet").unlink()
+    next((results / "figures").glob("*.png")).unlink()
+    run = copied.run()
+    assert run.returncode == 0, run.stderr
+    assert len(lines_with("results/tiny/mcmc: all.parquet lost; the folder is made again", run.stderr)) == 1
+    assert copied.results() == before
+    again = copied.run("--dry-run")
+    assert "Nothing to be done" in again.stdout + again.stderr
 
 
 def test_snakemakes_own_report_has_every_figure_with_title_and_caption(finished, tmp_path):

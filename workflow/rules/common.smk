@@ -13,7 +13,10 @@ from linepose.experiments.registry import (
     wanted_experiments,
 )
 from linepose.pipeline import code_digest
+from linepose.pipeline.file_list import lost_files
 from linepose.tables import read_table
+
+FOLDERS = ("simulated", "mcmc", "figures")  # results that are folders of many files
 
 try:
     PROJECT = load_project(config, Path(), compared_platforms)
@@ -27,6 +30,19 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
+
+# A folder of results from which a file was lost is made again: the list of its files goes, by which its rule is known.
+if workflow.is_main_process:
+    for folder in [
+        *(f"results/{name}/{what}" for name in PROJECT.platforms for what in FOLDERS),
+        "results/coverage/figures",
+    ]:
+        lost = lost_files(Path(folder), Path(f"{folder}_files.txt"))
+        if lost:
+            logger.warning(
+                f"{folder}: {', '.join(lost)} lost; the folder is made again"
+            )
+            Path(f"{folder}_files.txt").unlink()
 PLATFORMS = [name for name in STUDY.platforms if name in PROJECT.platforms]
 PAPER_RESULTS = []  # what `rule all` makes of the paper, where config/paper exists
 FURTHER_PAGES = {}  # that the report links to: title and address
@@ -71,6 +87,16 @@ def results_of(platform):
     return experiment_results(platform) + [
         f"results/{platform}/{name}.parquet" for name in names
     ]
+
+
+def record(wildcards):
+    """The result that stands for all that the platform recorded."""
+    return PROJECT.record(wildcards.platform)
+
+
+def recorded_folder(wildcards):
+    """The folder of what the platform recorded, as a rule's parameter."""
+    return str(PROJECT.folder(wildcards.platform))
 
 
 def readable(wildcards):

@@ -1,3 +1,8 @@
+# The experiments that platforms ask for: one rule an entry of linepose.experiments.registry.
+# Long ones keep finished batches in results/NAME/work/EXPERIMENT until they are done, so that a killed run goes on: they
+# must outlive the job, which temp() outputs and shadow folders do not, and jobs of their own would start too slowly.
+
+
 def experiment_inputs(experiment):
     """The files that an experiment's entry says it needs, by name."""
     files = {
@@ -11,7 +16,7 @@ def experiment_inputs(experiment):
         for need in ("observations", "outliers"):
             files[f"other_{need}"] = result_of_compared(experiment, need)
     if experiment.log:
-        files["record"] = lambda wildcards: PROJECT.record(wildcards.platform)
+        files["record"] = record
     if experiment.every_noise_model:
         files["compiled"] = expand(
             "results/compiled/{noise_model}.txt", noise_model=NOISE_MODELS
@@ -52,7 +57,7 @@ def experiment_parameters(experiment):
         "sections": sections,
         "study": study,
         "others": others,
-        "folder": lambda wildcards: str(PROJECT.folder(wildcards.platform)),
+        "folder": recorded_folder,
         "module": experiment.module,
         "code": script_digest("experiment", experiment.module),
         "work": f"results/{{platform}}/work/{experiment.name}",
@@ -73,9 +78,14 @@ for EXPERIMENT in EXPERIMENTS:
             },
         log:
             f"results/logs/{{platform}}/{EXPERIMENT.name}.log",
+        benchmark:
+            f"results/benchmarks/{{platform}}/{EXPERIMENT.name}.tsv"
         conda:
             "../../environment.yml"
         threads: EXPERIMENT.cores or workflow.cores or 1
+        resources:
+            mem_mb=2000,
+            runtime=600 if EXPERIMENT.in_batches else 60,
         params:
             **experiment_parameters(EXPERIMENT),
         script:

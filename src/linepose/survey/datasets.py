@@ -7,8 +7,6 @@ from typing import Final
 
 from linepose.errors import InputError
 
-_PATIENCE_S: Final = 5.0
-
 
 def find_dataset(name: str, files: Sequence[str], folders: Sequence[Path]) -> Path | None:
     """The first folder that has this data set, or None; raises InputError where one has only a part of it.
@@ -52,16 +50,6 @@ def check_dataset(folder: Path, sha256: Mapping[str, str | None]) -> dict[str, s
     return found
 
 
-def can_be_reached(url: str) -> bool:
-    """Whether a server answers for this address, within a few seconds."""
-    import requests
-
-    try:
-        return requests.head(url, timeout=_PATIENCE_S, allow_redirects=True).ok
-    except (requests.RequestException, OSError):
-        return False
-
-
 def download_dataset(
     name: str, base_url: str, sha256: Mapping[str, str], urls: Mapping[str, str], folder: Path, searched: Sequence[Path]
 ) -> None:
@@ -79,7 +67,7 @@ def download_dataset(
                 f"data set {name}",
                 f"no copy in {places}, and {fetcher.get_url(file)} cannot be reached ({type(error).__name__})",
                 "a copy or a network",
-                f"put the data set's files in {searched[0] / name}",
+                f"put its files in {searched[0] / name}, or leave its platforms out: snakemake --config offline=true",
             ) from None
         except ValueError as error:
             raise InputError(

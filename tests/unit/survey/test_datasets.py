@@ -151,7 +151,7 @@ def test_without_network_the_message_says_where_to_put_a_copy(tmp_path):
     assert str(error.value) == (
         f"data set robot: found no copy in {tmp_path}/data/robot, {tmp_path}/shared/robot, and {CLOSED}COPYING "
         f"cannot be reached (ConnectionError), expected a copy or a network; "
-        f"put the data set's files in {tmp_path}/data/robot"
+        f"put its files in {tmp_path}/data/robot, or leave its platforms out: snakemake --config offline=true"
     )
 
 

@@ -1,3 +1,50 @@
+# Surveys with a known truth: platforms that are simulated, and the coverage study over many surveys.
+
+
+SIMULATED = "|".join(PROJECT.simulated) or "[^\\s\\S]"  # a pattern that no name fits
+
+
+rule simulate:
+    output:
+        folder=directory("results/{platform}/simulated"),
+        files="results/{platform}/simulated_files.txt",
+        truth="results/{platform}/truth.parquet",
+    log:
+        "results/logs/{platform}/simulate.log",
+    wildcard_constraints:
+        platform=SIMULATED,
+    conda:
+        "../../environment.yml"
+    threads: 2
+    params:
+        camera=lambda wildcards: settings(wildcards)["camera"],
+        simulation=lambda wildcards: settings(wildcards)["simulation"],
+        code=script_digest("simulate"),
+    script:
+        "../../scripts/simulate.py"
+
+
+rule measure_extraction:
+    input:
+        folder="results/{platform}/simulated",
+        truth="results/{platform}/truth.parquet",
+    output:
+        accuracy="results/{platform}/extraction_accuracy.parquet",
+        detection="results/{platform}/detection.parquet",
+        points="results/{platform}/detected_points.parquet",
+    log:
+        "results/logs/{platform}/measure_extraction.log",
+    wildcard_constraints:
+        platform=SIMULATED,
+    conda:
+        "../../environment.yml"
+    params:
+        platform=settings,
+        code=script_digest("measure_extraction"),
+    script:
+        "../../scripts/measure_extraction.py"
+
+
 wildcard_constraints:
     regime="[A-Za-z0-9-]+",
     noise_model="[a-z]+",
@@ -54,6 +101,7 @@ rule coverage:
         csv="results/coverage/summary.csv",
         table="results/coverage/summary.md",
         figures=directory("results/coverage/figures"),
+        files="results/coverage/figures_files.txt",
     log:
         "results/logs/coverage/coverage.log",
     conda:

@@ -1,3 +1,6 @@
+# What people read: figures and reports.
+
+
 def figure_labels(wildcards):
     """A figure's title and its number in the paper, for Snakemake's report."""
     index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
@@ -25,9 +28,10 @@ rule figures:
         residuals="results/{platform}/residuals.parquet",
         points="results/{platform}/estimated_points.parquet",
         experiments=drawn_from,
-        record=lambda wildcards: PROJECT.record(wildcards.platform),
+        record=record,
     output:
-        report(
+        files="results/{platform}/figures_files.txt",
+        figures=report(
             directory("results/{platform}/figures"),
             patterns=["{figure}.png"],
             caption="../report/figure.rst",
@@ -44,7 +48,42 @@ rule figures:
             mode="json"
         ),
         outliers=section("outliers"),
-        folder=lambda wildcards: str(PROJECT.folder(wildcards.platform)),
+        folder=recorded_folder,
         code=script_digest("figures"),
     script:
         "../../scripts/figures.py"
+
+
+def reported(_):
+    """Every result that the report's summaries and sections rest on."""
+    always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
+    return [
+        file for platform in PLATFORMS for file in experiment_results(platform)
+    ] + expand("results/{platform}/{name}.parquet", platform=PLATFORMS, name=always)
+
+
+rule report:
+    input:
+        results=reported,
+        samples=expand("results/{platform}/mcmc", platform=PLATFORMS),
+        figures=expand("results/{platform}/figures", platform=PLATFORMS),
+    output:
+        report(
+            "results/report.html",
+            caption="../report/report.rst",
+            category="Report",
+            labels={"result": "summary of all platforms"},
+        ),
+    log:
+        "results/logs/report.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platforms={
+            name: PROJECT.platforms[name].model_dump(mode="json") for name in PLATFORMS
+        },
+        study=STUDY.model_dump(mode="json"),
+        further_pages=FURTHER_PAGES,
+        code=script_digest("report"),
+    script:
+        "../../scripts/report.py"

@@ -1,0 +1,120 @@
+# From observations to the pose and its uncertainty.
+
+OBSERVED = {  # what each stage of the removal is estimated from
+    "observations": "results/{platform}/observations.parquet",
+    "outliers": "results/{platform}/outliers.parquet",
+    "compiled": compiled,
+}
+
+
+rule compile:
+    output:
+        "results/compiled/{noise_model}.txt",
+    log:
+        "results/logs/compile_{noise_model}.log",
+    conda:
+        "../../environment.yml"
+    params:
+        code=script_digest("compile"),
+    script:
+        "../../scripts/compile.py"
+
+
+rule reject_outliers:
+    input:
+        observations="results/{platform}/observations.parquet",
+        compiled=compiled,
+    output:
+        "results/{platform}/outliers.parquet",
+    log:
+        "results/logs/{platform}/reject_outliers.log",
+    benchmark:
+        "results/benchmarks/{platform}/reject_outliers.tsv"
+    conda:
+        "../../environment.yml"
+    params:
+        platform=settings,
+        outliers=section("outliers"),
+        search=section("search"),
+        code=script_digest("reject_outliers"),
+    script:
+        "../../scripts/reject_outliers.py"
+
+
+rule optimise:
+    input:
+        **OBSERVED,
+    output:
+        "results/{platform}/optima.parquet",
+    log:
+        "results/logs/{platform}/optimise.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platform=settings,
+        search=section("search"),
+        code=script_digest("optimise"),
+    script:
+        "../../scripts/optimise.py"
+
+
+rule sample:
+    input:
+        **OBSERVED,
+        optima="results/{platform}/optima.parquet",
+    output:
+        samples=directory("results/{platform}/mcmc"),
+        files="results/{platform}/mcmc_files.txt",
+    log:
+        "results/logs/{platform}/sample.log",
+    benchmark:
+        "results/benchmarks/{platform}/sample.tsv"
+    conda:
+        "../../environment.yml"
+    threads: 2
+    resources:
+        mem_mb=2000,
+    params:
+        platform=settings,
+        sampling=sampling,
+        seed=STUDY.seed,
+        code=script_digest("sample"),
+    script:
+        "../../scripts/sample.py"
+
+
+rule diagnose:
+    input:
+        optima="results/{platform}/optima.parquet",
+        samples="results/{platform}/mcmc",
+    output:
+        diagnostics="results/{platform}/diagnostics.parquet",
+        pose="results/{platform}/pose.parquet",
+    log:
+        "results/logs/{platform}/diagnose.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platform=settings,
+        sampling=sampling,
+        code=script_digest("diagnose"),
+    script:
+        "../../scripts/diagnose.py"
+
+
+rule residuals:
+    input:
+        **OBSERVED,
+        optima="results/{platform}/optima.parquet",
+    output:
+        residuals="results/{platform}/residuals.parquet",
+        points="results/{platform}/estimated_points.parquet",
+    log:
+        "results/logs/{platform}/residuals.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platform=settings,
+        code=script_digest("residuals"),
+    script:
+        "../../scripts/residuals.py"
