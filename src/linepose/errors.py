@@ -2,13 +2,36 @@
 
 
 class LineposeError(Exception):
-    """Base of every error that linepose raises for its user; `str(error)` is one line."""
+    """Base of every error that linepose raises for its user; `str(error)` is one line.
+
+    Examples
+    --------
+    >>> import linepose
+    >>> issubclass(linepose.InputError, linepose.LineposeError)
+    True
+    """
 
 
 class InputError(LineposeError):
     """An input that cannot be used.
 
-    `place` names the file and, where there is one, the row, key or column; `remedy` is an imperative.
+    Parameters
+    ----------
+    place : str
+        The file and, where there is one, the row, key or column.
+    found, expected : str
+        What stands there, and what should.
+    remedy : str
+        What to do, as an imperative.
+
+    Examples
+    --------
+    >>> import linepose
+    >>> try:
+    ...     linepose.Search(half_width_m=-1.0)
+    ... except linepose.InputError as error:
+    ...     print(error)
+    Search: half_width_m: found -1.0, expected greater than 0; correct the value
     """
 
     def __init__(self, place: str, found: str, expected: str, remedy: str) -> None:
@@ -23,7 +46,14 @@ class InputError(LineposeError):
 
 
 class EstimationError(LineposeError):
-    """A computation that has no usable result: the message names the quantity and the remedy."""
+    """A computation that has no usable result: the message names the quantity and the remedy.
+
+    Examples
+    --------
+    >>> import linepose
+    >>> issubclass(linepose.EstimationError, linepose.LineposeError)
+    True
+    """
 
 
 def quoted(value: object) -> str:

@@ -5,10 +5,14 @@ that each default stands once.
 """
 
 import difflib
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+import inspect
+import re
+from typing import TYPE_CHECKING, Any, Self, TypeVar, get_args
 
-from pydantic import BaseModel, ConfigDict, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, ErrorDetails
 
 from linepose.errors import InputError, quoted
 
@@ -38,9 +42,37 @@ class Settings(BaseModel, metaclass=_FaultsInOneLine):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Tell the keys in the docstring, as numpydoc has it, in the words of the configuration's reference."""
+        about, examples, code = inspect.cleandoc(cls.__doc__ or "").partition("Examples\n--------")
+        keys = [
+            f"{name} : {_kind_of(field)}\n    {field.description or ''}" for name, field in cls.model_fields.items()
+        ]
+        cls.__doc__ = "\n".join([about.rstrip(), "", "Parameters", "----------", *keys, "", examples + code])
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        schema = handler(core_schema)
+        own = handler.resolve_ref_schema(schema)
+        about = own.pop("description", "").partition("Parameters\n----------")[0].rstrip()
+        own |= {"description": about} if about else {}
+        return schema
+
     def replaced(self, **changes: Any) -> Self:
         """These settings with other values of some keys, checked like those given first; raises InputError."""
         return type(self)(**{name: getattr(self, name) for name in type(self).model_fields} | changes)
+
+
+def _kind_of(field: FieldInfo) -> str:
+    """A key's type and default for people: `float, default 2.0`."""
+    annotation = field.annotation
+    name = annotation.__name__ if isinstance(annotation, type) and not get_args(annotation) else str(annotation)
+    name = re.sub(r"\b(?:[a-z_]+\.)+", "", name)
+    if field.is_required():
+        return name
+    default = field.get_default(call_default_factory=True, validated_data={})
+    return f"{name}, default {type(default).__name__ + '()' if isinstance(default, BaseModel) else repr(default)}"
 
 
 Model = TypeVar("Model", bound=Settings)

@@ -1,8 +1,10 @@
+import doctest
 from typing import Annotated, Literal
 
 import pytest
 from pydantic import Field, PositiveInt
 
+import linepose
 from linepose.errors import InputError
 from linepose.settings import Settings, validated
 
@@ -131,3 +133,26 @@ def test_replaced_values_are_checked():
     assert lens.replaced(k1=0.5) == Lens(focal_length_m=0.008, k1=0.5)
     with pytest.raises(InputError, match="Lens: k1: found 'x', expected a valid number"):
         lens.replaced(k1="x")
+
+
+PUBLIC = [name for name in linepose.__all__ if isinstance(getattr(linepose, name), type)]
+SETTINGS = [name for name in PUBLIC if issubclass(getattr(linepose, name), Settings)]
+
+
+@pytest.mark.parametrize("name", SETTINGS)
+def test_keys_are_told_in_the_docstring_with_their_defaults(name):
+    model = getattr(linepose, name)
+    for key, field in model.model_fields.items():
+        assert f"\n{key} : " in model.__doc__
+        assert field.description
+        assert f"    {field.description}\n" in model.__doc__
+    assert "Parameters" not in model.model_json_schema()["description"]
+
+
+@pytest.mark.parametrize("name", [*SETTINGS, "InputError", "EstimationError", "LineposeError"])
+def test_example_of_the_docstring_runs(name):
+    (example,) = doctest.DocTestFinder(recurse=False).find(getattr(linepose, name), name, globs={})
+    told = []
+    doctest.DocTestRunner(verbose=False).run(example, out=told.append)
+    assert example.examples
+    assert told == []

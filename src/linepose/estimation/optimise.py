@@ -33,7 +33,14 @@ _FLAT = 2e-2  # where the rounding of the robust model's sweeps may end it: some
 
 
 class Search(Settings):
-    """How the optimum is searched: the range around the start, and Powell's tolerances (the paper's by default)."""
+    """How the optimum is searched: the range around the start, and Powell's tolerances (the paper's by default).
+
+    Examples
+    --------
+    >>> import linepose
+    >>> linepose.Search(half_width_m=0.5).half_width_rad
+    3.141592653589793
+    """
 
     half_width_m: PositiveFloat = Field(2.0, description="Each coordinate is searched within +- this (m).")
     half_width_deg: PositiveFloat = Field(180.0, description="Each rotation component within +- this (deg).")

@@ -25,7 +25,14 @@ _OPEN_M, _OPEN_RAD = 0.02, 0.005  # where walkers start around an optimum whose 
 
 
 class SamplingSettings(Settings):
-    """The ensemble's size, length and start, moved as in the paper (whose numbers are the defaults)."""
+    """The ensemble's size, length and start, moved as in the paper (whose numbers are the defaults).
+
+    Examples
+    --------
+    >>> import linepose
+    >>> linepose.SamplingSettings(n_steps=400).n_walkers
+    250
+    """
 
     section: ClassVar[Literal["sampling"]] = "sampling"
     n_walkers: int = Field(250, ge=4, description="Walkers of the ensemble.")
@@ -40,6 +47,12 @@ class IndependenceSettings(Settings):
     """The ensemble's size and length for proposals from the fitted posterior, and the share of them among the moves.
 
     The rest are differential-evolution moves, which go on where the posterior is no Gaussian at all.
+
+    Examples
+    --------
+    >>> import linepose
+    >>> linepose.IndependenceSettings(n_steps=2000).independent_share
+    0.9
     """
 
     section: ClassVar[Literal["independence_sampling"]] = "independence_sampling"

@@ -13,7 +13,14 @@ from linepose.settings import Settings
 
 
 class CameraSigmas(Settings):
-    """One standard deviation of each camera quantity; units in the names, k1 and k2 have none."""
+    """One standard deviation of each camera quantity; units in the names, k1 and k2 have none.
+
+    Examples
+    --------
+    >>> import linepose
+    >>> linepose.CameraSigmas(u_px=0.3).focal_length_m
+    0.0001
+    """
 
     u_px: PositiveFloat = Field(0.5, description="Of a point's position along the scan line (px).")
     v_px: PositiveFloat = Field(0.5, description="Of a point's position across the scan line (px).")
@@ -24,7 +31,15 @@ class CameraSigmas(Settings):
 
 
 class Camera(Settings):
-    """Intrinsic parameters of a line-scan camera and how well they are known."""
+    """Intrinsic parameters of a line-scan camera and how well they are known.
+
+    Examples
+    --------
+    >>> import linepose
+    >>> camera = linepose.Camera(focal_length_m=8e-3, pixel_pitch_m=8e-6, n_pixels=640, principal_point_px=319.5)
+    >>> round(camera.focal_length_px)
+    1000
+    """
 
     focal_length_m: PositiveFloat = Field(description="Focal length (m).")
     pixel_pitch_m: PositiveFloat = Field(description="Width of a pixel on the sensor (m).")

@@ -14,6 +14,13 @@ class HandMeasured(Settings):
     """The camera in the body frame by tape measure: forward, right, down (m); roll, pitch, yaw, zyx intrinsic (deg).
 
     The sigmas are one standard deviation of each coordinate (m) and of each angle (deg).
+
+    Examples
+    --------
+    >>> import linepose
+    >>> by_hand = linepose.HandMeasured(position_m=(0.2, 0.0, -0.8), euler_deg=(0.0, 0.0, -90.0))
+    >>> by_hand.pose.round(3).tolist()
+    [0.2, 0.0, -0.8, 0.0, 0.0, -1.571]
     """
 
     position_m: Triple = Field(description="Camera in the body frame: forward, right, down (m).")
