@@ -10,6 +10,7 @@ import pytest
 import typer
 
 from linepose.cli.app import app
+from unit.test_rooms import ROOMS
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -122,6 +123,11 @@ def test_every_public_page_is_on_the_site():
     index = (DOCS / "index.md").read_text()
     for page in DOCS.glob("*.md"):
         assert page.stem == "index" or re.search(rf"^{page.stem}$", index, re.MULTILINE), page.name
+
+
+def test_rooms_stand_in_the_order_in_which_they_may_import():
+    cells = re.findall(r"^\| (`.*?`) \|", (DOCS / "architecture.md").read_text(), re.MULTILINE)
+    assert tuple(re.sub(r"\.py|/", "", name) for name in re.findall(r"`(.*?)`", " ".join(cells))) == ROOMS
 
 
 def test_readme_fits_two_screens():
