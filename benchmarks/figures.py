@@ -14,10 +14,10 @@ import yaml
 from linepose.config.project import load_project
 from linepose.errors import LineposeError
 from linepose.output.figures.render import render_figures
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.assemble import platform_on_page
 from linepose.output.report.page import render_page
 from linepose.output.report.provenance import settings_text, versions
+from linepose.pipeline.calibration import Calibration
 
 ROOT = Path(__file__).resolve().parents[1]
 FIGURES_TARGET_S, REPORT_TARGET_S = 40.0, 5.0
@@ -33,9 +33,9 @@ def least_seconds(function: Callable[[], object], repetitions: int) -> tuple[flo
     return min(wall for wall, _ in seconds), min(processor for _, processor in seconds)
 
 
-def report(results: list[PlatformResults]) -> str:
+def report(results: list[Calibration]) -> str:
     """The whole page."""
-    platforms = [platform_on_page(one, one.platform.model_dump(mode="json")) for one in results]
+    platforms = [platform_on_page(one, one.platform_file.model_dump(mode="json")) for one in results]
     return render_page(platforms, settings_text({}), versions())
 
 
@@ -44,9 +44,9 @@ def main() -> None:
     project = load_project(yaml.safe_load((ROOT / "config" / "config.yaml").read_text()) | {"offline": True}, ROOT)
     names = sys.argv[1:] or [name for name in project.study.platforms if name in project.platforms]
 
-    def results(name: str) -> PlatformResults:
+    def results(name: str) -> Calibration:
         folder, threshold_px = ROOT / "results" / name, project.study.outliers.threshold_px
-        return PlatformResults(name, project.platforms[name], folder, threshold_px, project.folder(name))
+        return Calibration.from_results(folder, project.platforms[name], threshold_px, data_folder=project.folder(name))
 
     print(f"{'':<34}{'wall, s':>10}{'processor, s':>14}{'target, s':>11}")
     try:

@@ -6,10 +6,13 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
+    from linepose.inputs.labels.labelled_views import POINTS
+    from linepose.inputs.local_frame import MAP_FRAME
+    from linepose.inputs.observed_points import SCAN_POINTS
     from linepose.inputs.source import LabelledViewsSection
     from linepose.pipeline.load import map_frame_table, read_reported, with_navigation
-    from linepose.pipeline.result_schemas import MAP_FRAME, NAVIGATION_SIGMA, OBSERVATIONS, POINTS, SCAN_POINTS
-    from linepose.survey.navigation import median_sigma_table
+    from linepose.survey.navigation import NAVIGATION_SIGMA, median_sigma_table
+    from linepose.survey.observations import OBSERVATIONS
     from linepose.tables import read_table, write_table
 
     platform, folder = Platform.model_validate(snakemake.params.platform), Path(snakemake.params.folder)

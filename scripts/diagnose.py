@@ -9,8 +9,16 @@ with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import sampling_settings
     from linepose.estimation.diagnostics import diagnose_samples
-    from linepose.pipeline.result_schemas import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
-    from linepose.pipeline.stages import diagnostics_table, estimated_parameters, pose_table, samples_from_table
+    from linepose.pipeline.stages import (
+        DIAGNOSTICS,
+        OPTIMA,
+        POSE,
+        SAMPLES,
+        diagnostics_table,
+        estimated_parameters,
+        pose_table,
+        samples_from_table,
+    )
     from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)

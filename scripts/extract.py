@@ -6,9 +6,10 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
+    from linepose.inputs.labels.labelled_views import POINTS
+    from linepose.inputs.observed_points import SCAN_POINTS
     from linepose.inputs.source import LabelledViewsSection
     from linepose.pipeline.load import read_points
-    from linepose.pipeline.result_schemas import POINTS, SCAN_POINTS
     from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)

@@ -6,21 +6,20 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
+    from linepose.output.figures.entry import FIGURES
     from linepose.output.figures.render import render_figures
-    from linepose.output.figures.results import PlatformResults
+    from linepose.pipeline.calibration import Calibration
     from linepose.pipeline.file_list import write_file_list
-    from linepose.pipeline.result_schemas import FIGURES
     from linepose.tables import write_table
 
-    results = PlatformResults(
-        name=snakemake.wildcards.platform,
-        platform=Platform.model_validate(snakemake.params.platform),
-        folder=Path(snakemake.input.pose).parent,
-        threshold_px=snakemake.params.outliers["threshold_px"],
+    calibration = Calibration.from_results(
+        Path(snakemake.input.pose).parent,
+        Platform.model_validate(snakemake.params.platform),
+        snakemake.params.outliers["threshold_px"],
         data_folder=Path(snakemake.params.folder),
     )
     folder = Path(snakemake.output.figures)
-    index = render_figures(results, folder)
+    index = render_figures(calibration, folder)
     write_table(index, folder / "index.parquet", FIGURES)
     write_file_list(folder, Path(snakemake.output.files))
     log.info("%d figures", (index["left_out"] == "").sum())

@@ -8,9 +8,8 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.inputs.labels.labels import read_labels
-    from linepose.inputs.observed_points import select_scans
-    from linepose.inputs.targets.measured import measure_extraction
-    from linepose.pipeline.result_schemas import DETECTION, EXTRACTION_ACCURACY, SCAN_POINTS
+    from linepose.inputs.observed_points import SCAN_POINTS, select_scans
+    from linepose.inputs.targets.measured import DETECTION, EXTRACTION_ACCURACY, measure_extraction
     from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)

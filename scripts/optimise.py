@@ -5,12 +5,11 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.estimation.optimise import Search
-    from linepose.estimation.outliers import stage_observations
+    from linepose.estimation.outliers import OUTLIERS, stage_observations
     from linepose.pipeline.platform_likelihood import platform_likelihood
-    from linepose.pipeline.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, laplace_sigma_columns, with_parameters
-    from linepose.pipeline.stages import optimise_stages
-    from linepose.survey.observations import survey_from_table
-    from linepose.tables import read_table, write_table
+    from linepose.pipeline.stages import OPTIMA, laplace_sigma_columns, optimise_stages
+    from linepose.survey.observations import OBSERVATIONS, survey_from_table
+    from linepose.tables import read_table, with_parameters, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     search = Search.model_validate(snakemake.params.search)

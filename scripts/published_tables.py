@@ -9,7 +9,8 @@ with stage(snakemake) as log:
     from linepose.experiments.repeatability import REPEATABILITY
     from linepose.experiments.subsets import SUBSETS
     from linepose.paper.tables import PUBLISHED_NAVIGATION, PUBLISHED_POSES, markdown, published_tables
-    from linepose.pipeline.result_schemas import NAVIGATION_SIGMA, POSE
+    from linepose.pipeline.stages import POSE
+    from linepose.survey.navigation import NAVIGATION_SIGMA
     from linepose.tables import atomic_write, read_table, write_csv, write_table
 
     tables = published_tables(

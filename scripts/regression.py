@@ -8,21 +8,18 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
+    from linepose.estimation.outliers import OUTLIERS
     from linepose.experiments.basin import BASIN_SUMMARY
     from linepose.experiments.repeatability import REPEATABILITY
     from linepose.experiments.subsets import SUBSETS
+    from linepose.experiments.truth_error import TRUTH_ERROR
+    from linepose.inputs.targets.measured import DETECTION, EXTRACTION_ACCURACY
     from linepose.paper.experiments_regression import BASIN_ROWS_OF, table_rows
     from linepose.paper.regression import PlatformResults, regression_table
     from linepose.paper.row import REGRESSION
     from linepose.paper.simulated_regression import extraction_rows
-    from linepose.pipeline.result_schemas import (
-        DETECTION,
-        EXTRACTION_ACCURACY,
-        NAVIGATION_SIGMA,
-        OUTLIERS,
-        POSE,
-        TRUTH_ERROR,
-    )
+    from linepose.pipeline.stages import POSE
+    from linepose.survey.navigation import NAVIGATION_SIGMA
     from linepose.tables import read_table, write_csv, write_table
 
     published_as = snakemake.params.published_as

@@ -5,10 +5,9 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.estimation.optimise import Search
-    from linepose.estimation.outliers import OutlierSettings, outlier_table, reject_outliers, removal_order
+    from linepose.estimation.outliers import OUTLIERS, OutlierSettings, outlier_table, reject_outliers, removal_order
     from linepose.pipeline.platform_likelihood import platform_likelihood
-    from linepose.pipeline.result_schemas import OBSERVATIONS, OUTLIERS
-    from linepose.survey.observations import survey_from_table
+    from linepose.survey.observations import OBSERVATIONS, survey_from_table
     from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)

@@ -6,21 +6,20 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.output.figures.results import PlatformResults
     from linepose.output.report.assemble import platform_on_page
     from linepose.output.report.page import render_page
     from linepose.output.report.provenance import settings_text, versions
+    from linepose.pipeline.calibration import Calibration
     from linepose.tables import atomic_write
 
     platforms = []
     for name, values in snakemake.params.platforms.items():
-        results = PlatformResults(
-            name=name,
-            platform=Platform.model_validate(values),
-            folder=Path(snakemake.output[0]).parent / name,
-            threshold_px=snakemake.params.study["outliers"]["threshold_px"],
+        calibration = Calibration.from_results(
+            Path(snakemake.output[0]).parent / name,
+            Platform.model_validate(values),
+            snakemake.params.study["outliers"]["threshold_px"],
         )
-        platforms.append(platform_on_page(results, values))
+        platforms.append(platform_on_page(calibration, values))
         log.info("%s: %s", name, platforms[-1].summary.verdict.sentence)
     page = render_page(
         platforms,

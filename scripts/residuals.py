@@ -4,11 +4,11 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.estimation.outliers import stage_observations
+    from linepose.estimation.outliers import OUTLIERS, stage_observations
     from linepose.pipeline.platform_likelihood import platform_likelihood
-    from linepose.pipeline.residual_tables import residual_tables
-    from linepose.pipeline.result_schemas import ESTIMATED_POINTS, OBSERVATIONS, OPTIMA, OUTLIERS, RESIDUALS
-    from linepose.survey.observations import survey_from_table
+    from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS, residual_tables
+    from linepose.pipeline.stages import OPTIMA
+    from linepose.survey.observations import OBSERVATIONS, survey_from_table
     from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)

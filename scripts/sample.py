@@ -7,15 +7,14 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.config.study import sampling_settings
-    from linepose.estimation.outliers import stage_observations
+    from linepose.estimation.outliers import OUTLIERS, stage_observations
     from linepose.estimation.sampling import sample, stage_seed
     from linepose.pipeline.file_list import write_file_list
     from linepose.pipeline.platform_likelihood import platform_likelihood
     from linepose.pipeline.progress import shown
-    from linepose.pipeline.result_schemas import OBSERVATIONS, OPTIMA, OUTLIERS, SAMPLES, with_parameters
-    from linepose.pipeline.stages import sample_table
-    from linepose.survey.observations import survey_from_table
-    from linepose.tables import read_table, write_table
+    from linepose.pipeline.stages import OPTIMA, SAMPLES, sample_table
+    from linepose.survey.observations import OBSERVATIONS, survey_from_table
+    from linepose.tables import read_table, with_parameters, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     settings = sampling_settings(snakemake.params.sampling)

@@ -12,8 +12,8 @@ def _tell_formats(asked: bool) -> None:
     if asked:
         from linepose.output.exports import EXPORTS
 
-        for key, exporter in EXPORTS.items():
-            typer.echo(f"{key:12s}{exporter.title}")
+        for one in EXPORTS.values():
+            typer.echo(f"{one.name:12s}{one.title}")
         raise typer.Exit
 
 
@@ -37,17 +37,21 @@ def export(
 ) -> None:
     """Write a finished platform's pose, or the points it maps, for a robot or a map."""
     from linepose.errors import InputError
-    from linepose.output.exports import EXPORTS, export_options, export_platform
+    from linepose.output.exports import EXPORTS, export_calibration, export_options
+    from linepose.pipeline.calibration import Calibration
     from linepose.pipeline.project_folder import find_project, load_platform_project
 
     if not format:
         raise InputError("--format", "nothing", f"one of {', '.join(EXPORTS)}", f"linepose export {name} --format urdf")
     root = find_project(project)
-    platform = load_platform_project(name, root).platforms[name]
-    if not (root / "results" / name / "pose.parquet").is_file():
-        raise InputError(str(root / "results" / name), "no result", "that of a run", f"linepose run {name}")
-    target = output or root / "results" / name / "exports"
+    loaded, folder = load_platform_project(name, root), root / "results" / name
+    if not (folder / "pose.parquet").is_file():
+        raise InputError(str(folder), "no result", "that of a run", f"linepose run {name}")
+    target = output or folder / "exports"
     if output is None:
         target.mkdir(exist_ok=True)
     options = export_options(parent_frame, child_frame, body_axes)
-    typer.echo(export_platform(root / "results", platform, name, format, target, stage, options))
+    calibration = Calibration.from_results(
+        folder, loaded.platforms[name], loaded.study.outliers.threshold_px, stage, root / loaded.folder(name)
+    )
+    typer.echo(export_calibration(calibration, format, target, options))

@@ -11,8 +11,7 @@ def show(name: Name, project: ProjectFolder = HERE) -> None:
 
     from linepose.cli.result import plain_lines, tables
     from linepose.errors import InputError
-    from linepose.estimation.outliers import OUTLIERS, removal_order
-    from linepose.output.figures.results import PlatformResults
+    from linepose.pipeline.calibration import Calibration
     from linepose.pipeline.project_folder import find_project, load_platform_project
     from linepose.pipeline.summary import summarise
 
@@ -21,9 +20,8 @@ def show(name: Name, project: ProjectFolder = HERE) -> None:
     folder = root / "results" / name
     if not (folder / "pose.parquet").is_file():
         raise InputError(str(folder), "no result", "that of a run", f"linepose run {name}")
-    results = PlatformResults(name, loaded.platforms[name], folder, loaded.study.outliers.threshold_px)
-    summary = summarise(results)
-    removed = removal_order(results.table("outliers", OUTLIERS))
+    calibration = Calibration.from_results(folder, loaded.platforms[name], loaded.study.outliers.threshold_px)
+    summary, removed = summarise(calibration), calibration.outliers
     console = Console()
     if console.is_terminal:
         for part in tables(summary, removed):

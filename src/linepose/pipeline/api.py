@@ -1,5 +1,6 @@
 """The Python interface: a platform's observations or an engineer's own arrays in, a calibration out, no workflow."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -220,7 +221,7 @@ def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
     loaded = _loaded(platform, project)
     settings, study = loaded.platforms[platform], loaded.study
     observations = read_observations(settings, recorded_folder(loaded, platform, find_project(project)))
-    return calibrate(
+    calibrated = calibrate(
         observations,
         settings.intrinsics(),
         settings.hand_measured,
@@ -233,7 +234,9 @@ def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
             sampling=study.sampling_of(settings.noise_model),
             seed=study.seed,
         ),
+        platform,
     )
+    return replace(calibrated, platform=settings)
 
 
 def recorded_folder(project: Project, platform: str, root: Path) -> Path:

@@ -26,6 +26,7 @@ from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood.prior import pose_prior
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.residual_tables import residual_tables
+from linepose.pipeline.results import Results
 from linepose.pipeline.stages import (
     diagnostics_table,
     estimated_parameters,
@@ -71,6 +72,7 @@ def calibrate(
     camera: Camera,
     hand_measured: HandMeasured,
     settings: CalibrationSettings | None = None,
+    name: str = "calibration",
 ) -> Calibration:
     """The camera's pose on the vehicle, with outliers removed and the uncertainty sampled.
 
@@ -85,6 +87,8 @@ def calibrate(
         The pose by tape measure (m, deg), where the search starts.
     settings : CalibrationSettings, optional
         How it is done.
+    name : str, optional
+        What messages and exports call the platform.
 
     Returns
     -------
@@ -126,21 +130,18 @@ def calibrate(
     samples = sample_table(chain, names)
     diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)), sampling.section)
     residuals, points = residual_tables(likelihood, accepted, {_STAGE: optimum})
-    return Calibration(
-        pose=optimum[:N_PARAMETERS],
-        covariance=chain.covariance()[:N_PARAMETERS, :N_PARAMETERS],
-        hand_measured=hand_measured,
-        threshold_px=settings.threshold_px,
-        noise_model=settings.noise_model,
-        observations=observations,
-        outlier_removal=outliers,
-        optima=optima,
-        samples=samples,
-        diagnostics=diagnostics_table(optima, {_STAGE: diagnostics}),
-        poses=pose_table(optima, {_STAGE: diagnostics.sigma}, start, np.sqrt(np.diag(hand_covariance))),
-        residuals=residuals,
-        points=points,
-    )
+    tables = {
+        "observations": observations,
+        "outliers": outliers,
+        "optima": optima,
+        f"mcmc/{_STAGE}": samples,
+        "diagnostics": diagnostics_table(optima, {_STAGE: diagnostics}),
+        "pose": pose_table(optima, {_STAGE: diagnostics.sigma}, start, np.sqrt(np.diag(hand_covariance))),
+        "residuals": residuals,
+        "estimated_points": points,
+    }
+    results = Results(name, in_memory=tables)
+    return Calibration(results, hand_measured, camera, settings.threshold_px, settings.noise_model)
 
 
 def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.DataFrame:

@@ -1,31 +1,37 @@
 """What a calibration gives: the pose, how sure it is, and everything it rests on."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
+from importlib import import_module
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import pandas as pd
 import pyarrow as pa
 
 from linepose.arrays import Floats
-from linepose.estimation.outliers import OUTLIERS, removal_order, stage_observations
-from linepose.geometry.pose import (
-    N_PARAMETERS,
-    euler_covariance,
-    euler_pose,
-)
-from linepose.geometry.rotations import matrix_from_rotation_vector
-from linepose.pipeline.pose_tables import PoseWithCovariance, quaternion, rotation_vector_numbers
+from linepose.errors import InputError
+from linepose.estimation.outliers import OUTLIERS, removal_order
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import POSE_COLUMNS, euler_covariance, euler_pose
+from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS
+from linepose.pipeline.results import Results
 from linepose.pipeline.stages import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
-from linepose.pipeline.summary import gather_evidence
-from linepose.pipeline.verdict import Verdict, judge
+from linepose.pipeline.table_checks import accepted_rows, stage_rows, usable_chain
 from linepose.survey.hand_measured import HandMeasured
-from linepose.survey.observations import OBSERVATIONS, Survey, survey_from_table
-from linepose.tables import with_parameters, write_table
+from linepose.survey.observations import OBSERVATIONS, POSITION_COLUMNS, Survey, survey_from_table
+from linepose.tables import floats, with_parameters, write_table
 
-_TABLES: Final = {
+if TYPE_CHECKING:
+    from linepose.config.platform import Platform
+    from linepose.pipeline.verdict import Verdict
+
+INLIERS: Final = "inliers"
+HAND_MEASURED: Final = "hand_measured"
+TABLES: Final = {
     "observations": OBSERVATIONS,
     "outliers": OUTLIERS,
     "optima": OPTIMA,
@@ -35,29 +41,43 @@ _TABLES: Final = {
     "residuals": RESIDUALS,
     "estimated_points": ESTIMATED_POINTS,
 }
+_TRUE_POINT_COLUMNS: Final = [f"point_{name}" for name in POSITION_COLUMNS]
 
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """The camera's pose on the vehicle and how sure it is.
+    """The camera's pose on the vehicle and how sure it is; what `calibrate` returns and a results folder holds.
 
-    pose (6,): position in the body frame (m), rotation vector camera to body (rad); covariance (6, 6) of it, sampled.
-    The tables have the columns of the workflow's results (`linepose.pipeline.result_schemas`).
+    `results` has the tables it rests on, `stage` says of which the pose is: `inliers`, `all`, `hand_measured`, or
+    `observations_N`. `platform` is the platform's file where there is one, `data_folder` what it recorded. Everything
+    else is read from these when it is first asked for; a table that cannot be used then raises InputError.
     """
 
-    pose: Floats
-    covariance: Floats
+    results: Results
     hand_measured: HandMeasured
+    camera: Camera
     threshold_px: float
     noise_model: str
-    observations: pd.DataFrame = field(repr=False)
-    outlier_removal: pd.DataFrame = field(repr=False)
-    optima: pd.DataFrame = field(repr=False)
-    samples: pd.DataFrame = field(repr=False)
-    diagnostics: pd.DataFrame = field(repr=False)
-    poses: pd.DataFrame = field(repr=False)
-    residuals: pd.DataFrame = field(repr=False)
-    points: pd.DataFrame = field(repr=False)
+    stage: str = INLIERS
+    platform: "Platform | None" = field(default=None, repr=False)
+    data_folder: Path | None = None
+
+    @classmethod
+    def from_results(
+        cls,
+        folder: Path | str,
+        platform: "Platform",
+        threshold_px: float = 5.0,
+        stage: str = INLIERS,
+        data_folder: Path | None = None,
+    ) -> "Calibration":
+        """The calibration of a platform whose results stand in a folder, results/NAME.
+
+        `threshold_px` is that of the outlier removal, for the verdict.
+        """
+        results = Results(Path(folder).name, Path(folder))
+        hand, camera = platform.hand_measured, platform.intrinsics()
+        return cls(results, hand, camera, threshold_px, platform.noise_model, stage, platform, data_folder)
 
     def __str__(self) -> str:
         """The pose for people: one number a line with its sigma, then what was removed and the verdict."""
@@ -75,6 +95,49 @@ class Calibration:
         return "\n".join([*lines, f"observations removed: {removed}", self.verdict().sentence])
 
     @property
+    def name(self) -> str:
+        """Name of the platform."""
+        return self.results.name
+
+    @property
+    def platform_file(self) -> "Platform":
+        """What the platform's file says; raises InputError for a calibration of arrays alone."""
+        if self.platform is None:
+            raise InputError(self.name, "no platform file", "a calibration of a platform", "use calibrate_platform")
+        return self.platform
+
+    @cached_property
+    def estimate(self) -> PoseWithCovariance:
+        """The stage's pose with its covariance: that of the samples, or of the hand measurement."""
+        if self.stage == HAND_MEASURED:
+            return PoseWithCovariance(self.pose_of(self.stage), self.hand_measured.covariance)
+        self.pose_of(self.stage)  # a stage that is unknown is told before samples are missed
+        samples = self.results.table(f"mcmc/{self.stage}", SAMPLES)
+        return PoseWithCovariance(self.pose_of(self.stage), np.cov(usable_chain(samples).T))
+
+    @property
+    def pose(self) -> Floats:
+        """Position in the body frame (m) and rotation vector, camera to body (rad); (6,)."""
+        return self.estimate.pose
+
+    @property
+    def covariance(self) -> Floats:
+        """Covariance (6, 6) of the pose, m and rad."""
+        return self.estimate.covariance
+
+    @property
+    def covariance_from(self) -> str:
+        """What the covariance rests on, in words."""
+        if self.stage == HAND_MEASURED:
+            return "sigmas of the hand measurement"
+        return f"{len(self.results.table(f'mcmc/{self.stage}', SAMPLES))} samples"
+
+    @property
+    def n_observations(self) -> int:
+        """How many observations the stage has."""
+        return int(self._row_of(self.stage)["n_observations"])
+
+    @property
     def position_m(self) -> Floats:
         """The camera in the body frame: forward, right, down (3,)."""
         return self.pose[:3]
@@ -82,7 +145,7 @@ class Calibration:
     @property
     def sigma(self) -> Floats:
         """One standard deviation of each number of the pose (6,), m and rad."""
-        return np.sqrt(np.diag(self.covariance))
+        return self.estimate.sigma
 
     @property
     def euler_deg(self) -> Floats:
@@ -97,20 +160,31 @@ class Calibration:
     @property
     def quaternion_wxyz(self) -> Floats:
         """Unit quaternion (w, x, y, z), camera to body."""
-        return quaternion(self.pose)
+        return self.estimate.quaternion_wxyz
 
     @property
     def matrix(self) -> Floats:
         """Homogeneous transform (4, 4) that takes points of the camera frame to the body frame (m)."""
-        transform = np.eye(4)
-        transform[:3, :3] = matrix_from_rotation_vector(self.pose[3:N_PARAMETERS])
-        transform[:3, 3] = self.position_m
-        return transform
+        return self.estimate.matrix
+
+    @property
+    def true_pose(self) -> Floats | None:
+        """The true pose (6,) of a simulated platform."""
+        simulation = None if self.platform is None else self.platform.simulation
+        return None if simulation is None else np.array(simulation.true_pose)
+
+    @property
+    def true_points_m(self) -> Floats | None:
+        """The pattern's true points (M, 3) in map coordinates, of a simulated platform."""
+        if not self.results.has("truth"):
+            return None
+        truth = self.results.table("truth", pa.schema(floats("point", *_TRUE_POINT_COLUMNS)))
+        return np.array(truth.groupby("point")[_TRUE_POINT_COLUMNS].first())
 
     @property
     def inliers(self) -> list[int]:
         """Numbers of the observations that the pose rests on."""
-        return stage_observations(self.outlier_removal)["inliers"]
+        return accepted_rows(self.outlier_removal)["observation"].astype(int).tolist()
 
     @property
     def outliers(self) -> list[int]:
@@ -120,70 +194,101 @@ class Calibration:
     @property
     def neg_log_likelihood(self) -> float:
         """-log L at the pose."""
-        return float(self.optima["neg_log_likelihood"].iloc[0])
+        return float(self._row_of(self.stage)["neg_log_likelihood"])
 
     @property
     def reduced_chi_square(self) -> float:
         """Near one where the reported sigmas are right."""
-        return float(self.optima["reduced_chi_square"].iloc[0])
+        return float(
+            stage_rows(self.optima, self.stage, [], f"{self.name}/optima.parquet")["reduced_chi_square"].iloc[0]
+        )
 
-    def verdict(self) -> Verdict:
+    @property
+    def observations(self) -> pd.DataFrame:
+        """Every observed point; columns as in `OBSERVATIONS`."""
+        return self.results.table("observations", OBSERVATIONS)
+
+    @property
+    def outlier_removal(self) -> pd.DataFrame:
+        """The stages of the outlier removal; columns as in `OUTLIERS`."""
+        return self.results.table("outliers", OUTLIERS)
+
+    @property
+    def optima(self) -> pd.DataFrame:
+        """The optimum of each stage; columns as in `OPTIMA`."""
+        return self.results.table("optima", OPTIMA)
+
+    @property
+    def samples(self) -> pd.DataFrame:
+        """The chain of the accepted observations; columns as in `SAMPLES`."""
+        return self.results.table("mcmc/inliers", SAMPLES)
+
+    @property
+    def diagnostics(self) -> pd.DataFrame:
+        """The chain's length and mixing; columns as in `DIAGNOSTICS`."""
+        return self.results.table("diagnostics", DIAGNOSTICS)
+
+    @property
+    def poses(self) -> pd.DataFrame:
+        """The pose of each stage, the hand-measured one first; columns as in `POSE`."""
+        return self.results.table("pose", POSE)
+
+    @property
+    def residuals(self) -> pd.DataFrame:
+        """What is left over of each point; columns as in `RESIDUALS`."""
+        return self.results.table("residuals", RESIDUALS)
+
+    @property
+    def points(self) -> pd.DataFrame:
+        """The pattern's estimated points; columns as in `ESTIMATED_POINTS`."""
+        return self.results.table("estimated_points", ESTIMATED_POINTS)
+
+    def survey(self) -> Survey:
+        """All observations as arrays."""
+        return survey_from_table(self.observations)
+
+    def pose_of(self, stage: str) -> Floats:
+        """The pose (6,) of a stage, such as `inliers` or `hand_measured`; raises InputError for an unknown one."""
+        return np.array(self._row_of(stage)[list(POSE_COLUMNS)], dtype=float)
+
+    def marked_poses(self) -> Mapping[str, Floats]:
+        """The poses (6,) that figures mark, by the name in the legend."""
+        marked = {"optimum": self.pose_of(INLIERS), "hand measured": self.pose_of(HAND_MEASURED)}
+        truth = self.true_pose
+        return marked if truth is None else {**marked, "truth": truth}
+
+    def verdict(self) -> "Verdict":
         """Whether to trust the pose: a level, a sentence, and each check with what it found and what to do."""
-        hand = PoseWithCovariance(self.hand_measured.pose, self.hand_measured.covariance)
-        numbers = rotation_vector_numbers(PoseWithCovariance(self.pose, self.covariance), hand)
-        return judge(gather_evidence(_InMemory(self), numbers))
+        from linepose.pipeline.evidence import gather_evidence
+        from linepose.pipeline.verdict import judge
+
+        return judge(gather_evidence(self))
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """Every table by the name of the workflow's result."""
-        return {
-            "observations": self.observations,
-            "outliers": self.outlier_removal,
-            "optima": self.optima,
-            "mcmc/inliers": self.samples,
-            "diagnostics": self.diagnostics,
-            "pose": self.poses,
-            "residuals": self.residuals,
-            "estimated_points": self.points,
-        }
+        return {name: self.results.table(name, schema) for name, schema in TABLES.items()}
 
     def write(self, folder: Path | str) -> None:
         """Write every table into a folder as the workflow does: Parquet, whole or not at all."""
         for name, table in self.tables().items():
-            schema = _TABLES[name]
+            schema = TABLES[name]
             own = tuple(column for column in table.columns if column not in schema.names)
             write_table(table, Path(folder) / f"{name}.parquet", with_parameters(schema, own))
 
+    def export(self, format: str, path: Path | str, **options: Any) -> Path:
+        """Write the pose, or the points that it maps, as a robot or a map reads them; the path that was written.
 
-@dataclass(frozen=True)
-class _InMemory:
-    """A calibration's tables as the report's summary reads them."""
+        `format` is one of `linepose export --list`; `path` a file, or a folder in which one is named after platform and
+        format. `options` are the fields of `linepose.output.exports.ExportOptions`: parent_frame, child_frame,
+        body_axes. Raises InputError for an unknown format, and for results that the format needs and that are missing.
+        """
+        exports = import_module("linepose.output.exports")  # by its name: output rests on this room, not it on output
+        written: Path = exports.export_calibration(self, format, Path(path), exports.ExportOptions(**options))
+        return written
 
-    calibration: Calibration
-
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-        return "calibration"
-
-    @property
-    def threshold_px(self) -> float:
-        return self.calibration.threshold_px
-
-    @property
-    def noise_model(self) -> str:
-        return self.calibration.noise_model
-
-    def table(self, name: str, schema: pa.Schema) -> pd.DataFrame:
-        return self.calibration.tables()[name][schema.names]
-
-    def has(self, name: str) -> bool:
-        return name in self.calibration.tables()
-
-    def survey(self) -> Survey:
-        return survey_from_table(self.calibration.observations)
-
-    def accepted(self) -> list[int]:
-        return self.calibration.inliers
-
-    def samples(self) -> pd.DataFrame:
-        return self.calibration.samples
+    def _row_of(self, stage: str) -> "pd.Series[Any]":
+        rows = self.poses.set_index("stage")
+        if stage not in rows.index:
+            known = ", ".join(rows.index)
+            raise InputError(f"stage of {self.name}", repr(stage), f"one of {known}", "name one of them")
+        return rows.loc[stage]

@@ -1,14 +1,12 @@
-"""The pose as people ask for it: rotation vector, Euler angles and quaternion, beside the hand measurement."""
+"""The pose as people ask for it: rotation vector and Euler angles, beside the hand measurement."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from linepose.arrays import Floats
 from linepose.geometry.pose import euler_covariance, euler_pose
-from linepose.geometry.rotations import matrix_from_rotation_vector
+from linepose.geometry.pose_with_covariance import PoseWithCovariance
 
 _POSITION = ("r_x forward", "r_y right", "r_z down")
 _GIMBAL_DEG = 89.0
@@ -42,14 +40,6 @@ class PoseNumber:
         return None if self.truth is None else (self.estimate - self.truth) / self.sigma
 
 
-@dataclass(frozen=True)
-class PoseWithCovariance:
-    """A pose (6,) with a rotation vector, and its covariance (6, 6)."""
-
-    pose: Floats
-    covariance: Floats
-
-
 def rotation_vector_numbers(
     estimate: PoseWithCovariance, hand: PoseWithCovariance, truth: Floats | None = None
 ) -> list[PoseNumber]:
@@ -78,12 +68,6 @@ def euler_numbers(
         None if truth is None else scale @ euler_pose(truth),
     )
     return numbers[3:]
-
-
-def quaternion(pose: ArrayLike) -> Floats:
-    """Unit quaternion (w, x, y, z) of a pose's rotation, camera to body, w not negative; (6,) to (4,)."""
-    rotation = Rotation.from_matrix(matrix_from_rotation_vector(np.array(pose, dtype=float)[3:]))
-    return np.asarray(rotation.as_quat(canonical=True, scalar_first=True))
 
 
 def _numbers(

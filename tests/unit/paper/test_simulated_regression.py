@@ -4,11 +4,10 @@ import pyarrow as pa
 import pytest
 from scipy.spatial.transform import Rotation
 
-from linepose.experiments.truth_error import true_pose, truth_error_table
+from linepose.experiments.truth_error import TRUTH_ERROR, true_pose, truth_error_table
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.paper.experiments_regression import BASIN_ROWS_OF
 from linepose.paper.simulated_regression import extraction_rows, fault_rows, sigma_rows, truth_rows
-from linepose.pipeline.result_schemas import TRUTH_ERROR
 
 TRUTH = np.array([0.2, -0.1, -0.8, -0.8, 0.7, -1.4])
 PUBLISHED = {"sigma": [0.03, 0.05, 0.06, 0.016, 0.018, 0.009]}

@@ -1,20 +1,27 @@
 """Mapped points as GeoJSON (RFC 7946): longitude, latitude and ellipsoidal height in WGS84."""
 
-from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
-import pandas as pd
+from linepose.output.exports.format import ExportFormat
+from linepose.output.exports.options import ExportOptions
 
-from linepose.output.exports.map_frame import MapFrame
-from linepose.output.exports.points import MAP_COLUMNS
+if TYPE_CHECKING:
+    from linepose.pipeline.calibration import Calibration
 
 
-def write_geojson(layers: Mapping[str, pd.DataFrame], frame: MapFrame, path: Path) -> None:
+def write_geojson(calibration: "Calibration", options: ExportOptions, path: Path) -> None:  # noqa: ARG001
     """Write one feature a point; its properties say which layer it is of, and hold easting, northing, height, sigmas.
 
     Sigmas and covariances stay those of the survey's easting, northing and height, in metres.
     """
     import geopandas
+    import pandas as pd
+
+    from linepose.output.exports.points import MAP_COLUMNS, frame_of, mapped_points
+
+    frame = frame_of(calibration)
+    layers = mapped_points(calibration, frame)
 
     parts = [table.assign(layer=name, survey_crs=frame.name) for name, table in layers.items()]
     table = pd.concat(parts, ignore_index=True)
@@ -25,3 +32,6 @@ def write_geojson(layers: Mapping[str, pd.DataFrame], frame: MapFrame, path: Pat
     points = geopandas.points_from_xy(longitude, latitude, height)
     collection = geopandas.GeoDataFrame(table, geometry=points, crs="EPSG:4326")
     path.write_text(collection.to_json(drop_id=True, na="drop", ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+FORMAT: Final = ExportFormat("geojson", "mapped points in WGS84", ".geojson", write_geojson)

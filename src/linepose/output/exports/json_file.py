@@ -2,36 +2,41 @@
 
 import json
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from linepose.geometry.pose import POSE_COLUMNS
-from linepose.geometry.rotations import euler_from_rotation_vector
-from linepose.output.exports.calibration import Calibration
-from linepose.output.exports.numbers import plain
+from linepose.output.exports.format import ExportFormat
 from linepose.output.exports.options import AXES_IN_WORDS, ExportOptions
 from linepose.output.exports.words import CAMERA_AXES
+
+if TYPE_CHECKING:
+    from linepose.pipeline.calibration import Calibration
 
 VERSION: Final = 1
 
 
-def write_json(calibration: Calibration, options: ExportOptions, path: Path) -> None:
+def write_json(calibration: "Calibration", options: ExportOptions, path: Path) -> None:
     """Write the pose as rotation vector, quaternion, Euler angles and matrix, with the rotation vector's covariance."""
     path.write_text(json.dumps(_content(calibration, options), indent=2) + "\n", encoding="utf-8")
 
 
-def _content(calibration: Calibration, options: ExportOptions) -> dict[str, Any]:
-    pose = calibration.pose
+def _content(calibration: "Calibration", options: ExportOptions) -> dict[str, Any]:
+    from linepose.geometry.pose import POSE_COLUMNS
+    from linepose.geometry.rotations import euler_from_rotation_vector
+    from linepose.output.exports.numbers import plain
+
+    estimate = calibration.estimate.in_axes(options.body_axes or "frd")
+    pose = estimate.pose
     return {
         "format": "linepose pose",
         "version": VERSION,
-        "platform": calibration.platform,
+        "platform": calibration.name,
         "stage": calibration.stage,
         "n_observations": calibration.n_observations,
         "noise_model": calibration.noise_model,
         "parent_frame": options.parent_frame,
         "child_frame": options.child_frame,
         "conventions": {
-            "body_axes": AXES_IN_WORDS[calibration.body_axes],
+            "body_axes": AXES_IN_WORDS[estimate.body_axes],
             "camera_axes": CAMERA_AXES,
             "pose": "camera in the body: x_body = matrix x_camera, homogeneous",
             "rotation_vector": "angle (rad) times unit axis, camera to body",
@@ -40,10 +45,13 @@ def _content(calibration: Calibration, options: ExportOptions) -> dict[str, Any]
         },
         "position_m": plain(pose[:3]),
         "rotation_vector_rad": plain(pose[3:]),
-        "quaternion_wxyz": plain(calibration.quaternion()),
+        "quaternion_wxyz": plain(estimate.quaternion_wxyz),
         "euler_rad": plain(euler_from_rotation_vector(pose[3:])),
-        "matrix": [plain(row) for row in calibration.matrix()],
+        "matrix": [plain(row) for row in estimate.matrix],
         "parameters": list(POSE_COLUMNS),
-        "sigma": plain(calibration.sigma()),
-        "covariance": [plain(row) for row in calibration.covariance],
+        "sigma": plain(estimate.sigma),
+        "covariance": [plain(row) for row in estimate.covariance],
     }
+
+
+FORMAT: Final = ExportFormat("json", "pose with covariance and conventions", ".json", write_json)

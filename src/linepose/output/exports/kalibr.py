@@ -6,18 +6,24 @@ the line as linepose's do.
 """
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
-import yaml
-
-from linepose.config.platform import Platform
-from linepose.output.exports.calibration import Calibration
-from linepose.output.exports.numbers import plain
+from linepose.output.exports.format import ExportFormat
+from linepose.output.exports.options import ExportOptions
 from linepose.output.exports.words import explained
 
+if TYPE_CHECKING:
+    from linepose.pipeline.calibration import Calibration
 
-def write_kalibr(calibration: Calibration, platform: Platform, path: Path) -> None:
+
+def write_kalibr(calibration: "Calibration", options: ExportOptions, path: Path) -> None:
     """Write `cam0`: the transform, the intrinsics, and no time shift: the pose rests on the clocks as they are."""
-    camera = platform.intrinsics()
+    import yaml
+
+    from linepose.output.exports.numbers import plain
+
+    camera = calibration.camera
+    estimate = calibration.estimate.in_axes(options.body_axes or "frd")
     focal = camera.focal_length_px
     chain = {
         "cam0": {
@@ -28,12 +34,15 @@ def write_kalibr(calibration: Calibration, platform: Platform, path: Path) -> No
             "resolution": [camera.n_pixels, 1],
             "rostopic": "/line_camera/image_raw",
             "timeshift_cam_imu": 0.0,
-            "T_cam_imu": [plain(row) for row in calibration.inverse_matrix()],
+            "T_cam_imu": [plain(row) for row in estimate.inverse_matrix],
         }
     }
     comments = [
-        *explained(calibration),
+        *explained(calibration, estimate),
         "T_cam_imu takes body coordinates to camera coordinates: x_cam = T_cam_imu x_body.",
     ]
     head = "".join(f"# {line}\n" for line in comments)
     path.write_text(head + yaml.safe_dump(chain, sort_keys=False, width=200, default_flow_style=None), encoding="utf-8")
+
+
+FORMAT: Final = ExportFormat("kalibr", "camchain as Kalibr writes it", "-camchain.yaml", write_kalibr)

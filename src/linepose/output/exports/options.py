@@ -6,7 +6,8 @@ from typing import Final, Literal, get_args
 
 from linepose.errors import InputError
 
-BodyAxes = Literal["frd", "flu"]
+BodyAxes = Literal["frd", "flu"]  # as in linepose.geometry.pose_with_covariance, which takes scipy
+
 
 AXES_IN_WORDS: Final[dict[BodyAxes, str]] = {
     "frd": "x forward, y right, z down",

@@ -1,18 +1,16 @@
 """The mapped points of a finished calibration in easting, northing and height, with their covariances."""
 
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 import pandas as pd
 
-from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.experiments.mapping import MAPPING, PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.inputs.local_frame import GEODETIC, MAP_FRAME
-from linepose.output.exports.calibration import finished
 from linepose.output.exports.map_frame import MapFrame, projected_map, tangent_map
-from linepose.pipeline.residual_tables import ESTIMATED_POINTS, POINT_COVARIANCE_COLUMNS
+from linepose.pipeline.calibration import INLIERS, Calibration
+from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS
 from linepose.survey.observations import POSITION_COLUMNS
 from linepose.tables import read_table
 
@@ -22,20 +20,20 @@ _UPPER: Final = tuple((i, j) for i in range(3) for j in range(i, 3))
 MAP_COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_SHORT[i]}_{_SHORT[j]}_m2" for i, j in _UPPER)
 MAP_SIGMA_COLUMNS: Final = tuple(f"sigma_{name}" for name in MAP_COLUMNS)
 PROJECTED_POSES: Final = ("calibrated", "hand_measured")
-_STAGE: Final = "inliers"
 
 
-def frame_of(results: Path, platform: Platform, name: str) -> MapFrame:
+def frame_of(calibration: Calibration) -> MapFrame:
     """The map that a platform's points go to: what its file says, or its navigation log.
 
     Raises InputError where neither says where the survey lies.
     """
-    section, place = platform.map_frame, f"{name}.yaml: map_frame"
+    results, place = calibration.results, f"{calibration.name}.yaml: map_frame"
+    section = calibration.platform.map_frame if calibration.platform else None
     if section is not None and section.crs is not None:
         return projected_map(section.crs, f"{place}.crs")
     if section is not None and section.origin is not None:
         return tangent_map(section.origin, f"{place}.origin")
-    of_log = results / name / "map_frame.parquet"
+    of_log = results.path("map_frame")
     recorded = read_table(of_log, MAP_FRAME) if of_log.is_file() else None
     if recorded is not None and len(recorded):
         row = recorded.iloc[0]
@@ -51,26 +49,26 @@ def frame_of(results: Path, platform: Platform, name: str) -> MapFrame:
     )
 
 
-def read_mapped_points(results: Path, name: str, stage: str, frame: MapFrame) -> dict[str, pd.DataFrame]:
-    """Layers of points below results/NAME: `estimated_points`, and `projected_POSE` for each pose of PROJECTED_POSES.
+def mapped_points(calibration: Calibration, frame: MapFrame) -> dict[str, pd.DataFrame]:
+    """Layers of points: `estimated_points`, and `projected_POSE` for each pose of PROJECTED_POSES.
 
     Columns: point, of projections the observation too, then easting, northing, height (m), the sigma of each, and
     their covariances. Raises InputError where the mapping was not run, or another stage than the accepted is asked for.
     """
-    if stage != _STAGE:
-        expected = f"{_STAGE}, whose pose points are mapped with"
-        raise InputError(f"stage of {name}", repr(stage), expected, "leave the stage out")
-    estimated = read_table(finished(results / name / "estimated_points.parquet", name), ESTIMATED_POINTS)
-    path = results / name / "mapping.parquet"
-    if not path.is_file():
+    results = calibration.results
+    if calibration.stage != INLIERS:
+        expected = f"{INLIERS}, whose pose points are mapped with"
+        raise InputError(f"stage of {calibration.name}", repr(calibration.stage), expected, "leave the stage out")
+    estimated = calibration.points
+    if not results.has("mapping"):
         raise InputError(
-            str(path),
+            str(results.path("mapping")),
             "no such result",
             "that of the mapping experiment",
-            f"run `linepose run {name}`, with `experiments.mapping` not null in its file",
+            f"run `linepose run {calibration.name}`, with `experiments.mapping` not null in its file",
         )
-    projected = read_table(path, MAPPING).dropna()
-    estimated = estimated[estimated["stage"] == stage]
+    projected = results.table("mapping", MAPPING).dropna()
+    estimated = estimated[estimated["stage"] == INLIERS]
     layers = {"estimated_points": _on_map(estimated, POSITION_COLUMNS, POINT_COVARIANCE_COLUMNS, frame)}
     for pose in PROJECTED_POSES:
         table = projected[projected["pose"] == pose]

@@ -6,22 +6,27 @@ are given for any node.
 
 import shlex
 from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
-import yaml
-
-from linepose.arrays import exact_decimal
-from linepose.output.exports.calibration import Calibration
-from linepose.output.exports.numbers import plain
+from linepose.output.exports.format import ExportFormat
 from linepose.output.exports.options import ExportOptions
 from linepose.output.exports.words import explained
+
+if TYPE_CHECKING:
+    from linepose.pipeline.calibration import Calibration
 
 _AXES = ("x", "y", "z")
 
 
-def write_ros2(calibration: Calibration, options: ExportOptions, path: Path) -> None:
+def write_ros2(calibration: "Calibration", options: ExportOptions, path: Path) -> None:
     """Write the parameter file, the launch line in its second comment."""
-    translation = dict(zip(_AXES, plain(calibration.pose[:3]), strict=True))
-    w, x, y, z = plain(calibration.quaternion())
+    import yaml
+
+    from linepose.output.exports.numbers import plain
+
+    estimate = calibration.estimate.in_axes(options.body_axes or "flu")
+    translation = dict(zip(_AXES, plain(estimate.pose[:3]), strict=True))
+    w, x, y, z = plain(estimate.quaternion_wxyz)
     rotation = {"x": x, "y": y, "z": z, "w": w}
     parameters = {
         "frame_id": options.parent_frame,
@@ -29,7 +34,7 @@ def write_ros2(calibration: Calibration, options: ExportOptions, path: Path) -> 
         "translation": translation,
         "rotation": rotation,
     }
-    comments = [*explained(calibration), launch_line(options, translation, rotation)]
+    comments = [*explained(calibration, estimate), launch_line(options, translation, rotation)]
     head = "".join(f"# {line}\n" for line in comments)
     body = yaml.safe_dump({"/**": {"ros__parameters": parameters}}, sort_keys=False)
     path.write_text(head + body, encoding="utf-8")
@@ -37,7 +42,14 @@ def write_ros2(calibration: Calibration, options: ExportOptions, path: Path) -> 
 
 def launch_line(options: ExportOptions, translation: dict[str, float], rotation: dict[str, float]) -> str:
     """The command that publishes the transform without the file."""
+    from linepose.arrays import exact_decimal
+
     moved = [item for axis, value in translation.items() for item in (f"--{axis}", exact_decimal(value))]
     turned = [item for axis, value in rotation.items() for item in (f"--q{axis}", exact_decimal(value))]
     frames = ["--frame-id", options.parent_frame, "--child-frame-id", options.child_frame]
     return shlex.join(["ros2", "run", "tf2_ros", "static_transform_publisher", *moved, *turned, *frames])
+
+
+FORMAT: Final = ExportFormat(
+    "ros2", "ROS 2 static transform: parameters and launch line", "-transform.yaml", write_ros2
+)

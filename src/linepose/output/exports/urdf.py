@@ -6,25 +6,32 @@ numbers as zyx intrinsic.
 
 import warnings
 from pathlib import Path
-from xml.etree import ElementTree
+from typing import TYPE_CHECKING, Final
 
-from linepose.geometry.rotations import euler_from_matrix
-from linepose.output.exports.calibration import Calibration
-from linepose.output.exports.numbers import numbers
+from linepose.output.exports.format import ExportFormat
 from linepose.output.exports.options import ExportOptions
 from linepose.output.exports.words import explained
 
+if TYPE_CHECKING:
+    from linepose.pipeline.calibration import Calibration
 
-def write_urdf(calibration: Calibration, options: ExportOptions, path: Path) -> None:
+
+def write_urdf(calibration: "Calibration", options: ExportOptions, path: Path) -> None:
     """Write the joint from the body's link to the camera's, for `<xacro:include>` or to be copied into a robot."""
+    from xml.etree import ElementTree
+
+    from linepose.geometry.rotations import euler_from_matrix
+    from linepose.output.exports.numbers import numbers
+
+    estimate = calibration.estimate.in_axes(options.body_axes or "flu")
     parent, child = options.parent_frame, options.child_frame
-    robot = ElementTree.Element("robot", name=calibration.platform)
-    for line in explained(calibration):
+    robot = ElementTree.Element("robot", name=calibration.name)
+    for line in explained(calibration, estimate):
         robot.append(ElementTree.Comment(f" {line.replace('--', '- -')} "))
     for link in (parent, child):
         ElementTree.SubElement(robot, "link", name=link)
     joint = ElementTree.SubElement(robot, "joint", name=f"{parent}_to_{child}", type="fixed")
-    transform = calibration.matrix()
+    transform = estimate.matrix
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # at a pitch of 90 deg any roll with its yaw is the same rotation
         rpy = euler_from_matrix(transform[:3, :3])
@@ -33,3 +40,6 @@ def write_urdf(calibration: Calibration, options: ExportOptions, path: Path) -> 
     ElementTree.SubElement(joint, "child", link=child)
     ElementTree.indent(robot)
     path.write_bytes(ElementTree.tostring(robot, encoding="utf-8", xml_declaration=True) + b"\n")
+
+
+FORMAT: Final = ExportFormat("urdf", "fixed joint from the body to the camera", ".urdf", write_urdf)

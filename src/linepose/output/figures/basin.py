@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from linepose.experiments.basin import Region
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLACK, BLUE, HALF_PAGE_IN, blank_figure, few_ticks, styled
+from linepose.pipeline.table_checks import usable_rows
 
 _FAILED = "#E8D9C5"
 _RATES = ["success_rate", "success_rate_low", "success_rate_high"]

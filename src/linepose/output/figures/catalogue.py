@@ -32,69 +32,69 @@ from linepose.output.figures import (
 )
 from linepose.output.figures.entry import CatalogueEntry, without
 from linepose.output.figures.noise_catalogue import NOISE_FIGURES
-from linepose.output.figures.results import PlatformResults
 from linepose.output.figures.scan_example import scan_examples
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS
 from linepose.pipeline.stages import DIAGNOSTICS
 from linepose.survey.observations import OBSERVATIONS
 
 
-def _mapping(r: PlatformResults) -> Figure:
-    points = r.table("estimated_points", ESTIMATED_POINTS)
-    mapped = r.table("mapping", MAPPING)
-    observations = r.table("observations", OBSERVATIONS)
-    return mapping.mapping(mapped, points, observations, r.accepted()[0], r.true_points_m)
+def _mapping(r: Calibration) -> Figure:
+    points = r.results.table("estimated_points", ESTIMATED_POINTS)
+    mapped = r.results.table("mapping", MAPPING)
+    observations = r.results.table("observations", OBSERVATIONS)
+    return mapping.mapping(mapped, points, observations, r.inliers[0], r.true_points_m)
 
 
-def _angle_error(r: PlatformResults) -> Figure:
-    points = r.table("estimated_points", ESTIMATED_POINTS)
-    mapped = r.table("mapping", MAPPING)
-    observations = r.table("observations", OBSERVATIONS)
+def _angle_error(r: Calibration) -> Figure:
+    points = r.results.table("estimated_points", ESTIMATED_POINTS)
+    mapped = r.results.table("mapping", MAPPING)
+    observations = r.results.table("observations", OBSERVATIONS)
     return mapping.angle_error(mapped, points, observations, _angle_deg(r), r.true_points_m)
 
 
-def _angle_deg(r: PlatformResults) -> float:
-    settings = MAPPING_SECTION.of(r.platform)
+def _angle_deg(r: Calibration) -> float:
+    settings = MAPPING_SECTION.of(r.platform_file)
     return settings.perturbation_deg if settings else 0.0
 
 
-def _basin(r: PlatformResults) -> Figure:
-    settings = BASIN_SECTION.of(r.platform)
+def _basin(r: Calibration) -> Figure:
+    settings = BASIN_SECTION.of(r.platform_file)
     assert settings is not None  # left_out says so before
-    return basin.basin(r.table("basin", BASIN), settings.region())
+    return basin.basin(r.results.table("basin", BASIN), settings.region())
 
 
-def _basin_caption(r: PlatformResults) -> str:
-    settings = BASIN_SECTION.of(r.platform)
+def _basin_caption(r: Calibration) -> str:
+    settings = BASIN_SECTION.of(r.platform_file)
     assert settings is not None
-    return basin.basin_caption(r.table("basin_summary", BASIN_SUMMARY), settings.region())
+    return basin.basin_caption(r.results.table("basin_summary", BASIN_SUMMARY), settings.region())
 
 
-def _sketch(r: PlatformResults) -> Figure:
-    assert r.platform.outline is not None
-    return platform_sketch.platform_sketch(r.samples(), r.platform.outline, r.marked_poses())
+def _sketch(r: Calibration) -> Figure:
+    assert r.platform_file.outline is not None
+    return platform_sketch.platform_sketch(r.samples, r.platform_file.outline, r.marked_poses())
 
 
-def _named_pair(r: PlatformResults) -> pd.DataFrame | None:
-    return r.table("repeatability", REPEATABILITY) if r.has("repeatability") else None
+def _named_pair(r: Calibration) -> pd.DataFrame | None:
+    return r.results.table("repeatability", REPEATABILITY) if r.results.has("repeatability") else None
 
 
-def _trace(r: PlatformResults) -> Figure:
+def _trace(r: Calibration) -> Figure:
     marked = {name: pose for name, pose in r.marked_poses().items() if name != "hand measured"}
-    return trace.trace(r.samples(), marked)
+    return trace.trace(r.samples, marked)
 
 
-def _diagnostics_caption(r: PlatformResults) -> str:
-    n_steps = int(r.samples()["step"].max()) + 1
-    return trace.autocorrelation_caption(r.table("diagnostics", DIAGNOSTICS), n_steps)
+def _diagnostics_caption(r: Calibration) -> str:
+    n_steps = int(r.samples["step"].max()) + 1
+    return trace.autocorrelation_caption(r.results.table("diagnostics", DIAGNOSTICS), n_steps)
 
 
-def _residuals(by: str) -> Callable[[PlatformResults], Figure]:
-    return lambda r: residuals.residuals(r.table("residuals", RESIDUALS), by)
+def _residuals(by: str) -> Callable[[Calibration], Figure]:
+    return lambda r: residuals.residuals(r.results.table("residuals", RESIDUALS), by)
 
 
-def _residuals_caption(by: str) -> Callable[[PlatformResults], str]:
-    return lambda r: residuals.residuals_caption(r.table("residuals", RESIDUALS), by)
+def _residuals_caption(by: str) -> Callable[[Calibration], str]:
+    return lambda r: residuals.residuals_caption(r.results.table("residuals", RESIDUALS), by)
 
 
 def _without_splits(platform: Platform) -> str:
@@ -124,8 +124,8 @@ FIGURES: Final = (
         "Survey from above",
         "Figure 5",
         "map of the observations around the pattern, numbered and coloured by tilt",
-        lambda r: survey_plan.survey_plan(r.survey(), r.accepted(), r.table("estimated_points", ESTIMATED_POINTS)),
-        lambda r: survey_plan.survey_plan_caption(r.survey(), r.accepted()),
+        lambda r: survey_plan.survey_plan(r.survey(), r.inliers, r.results.table("estimated_points", ESTIMATED_POINTS)),
+        lambda r: survey_plan.survey_plan_caption(r.survey(), r.inliers),
     ),
     CatalogueEntry(
         "stacked_scan",
@@ -159,32 +159,32 @@ FIGURES: Final = (
         "Outlier removal",
         "Figure 8",
         "matrix of mean errors, observations across, stages of the removal down, the accepted row framed",
-        lambda r: outlier_matrix.outlier_matrix(r.table("outliers", OUTLIERS)),
-        lambda r: outlier_matrix.outlier_matrix_caption(r.table("outliers", OUTLIERS), r.threshold_px),
+        lambda r: outlier_matrix.outlier_matrix(r.results.table("outliers", OUTLIERS)),
+        lambda r: outlier_matrix.outlier_matrix_caption(r.results.table("outliers", OUTLIERS), r.threshold_px),
     ),
     CatalogueEntry(
         "uncertainty",
         "Uncertainty against observations",
         "Figure 9",
         "lines of the sigma of each pose parameter against the number of observations",
-        lambda r: uncertainty.uncertainty(r.table("uncertainty", UNCERTAINTY)),
-        lambda r: uncertainty.uncertainty_caption(r.table("uncertainty", UNCERTAINTY)),
+        lambda r: uncertainty.uncertainty(r.results.table("uncertainty", UNCERTAINTY)),
+        lambda r: uncertainty.uncertainty_caption(r.results.table("uncertainty", UNCERTAINTY)),
     ),
     CatalogueEntry(
         "corner",
         "Posterior of the pose",
         "Figure 10",
         "histograms and contours of every pair of pose parameters with the optimum and the hand measurement marked",
-        lambda r: corner_plot.corner_plot(r.samples(), r.marked_poses()),
-        lambda r: corner_plot.corner_plot_caption(r.samples()),
+        lambda r: corner_plot.corner_plot(r.samples, r.marked_poses()),
+        lambda r: corner_plot.corner_plot_caption(r.samples),
     ),
     CatalogueEntry(
         "rotation_axis",
         "Rotation axis and angle",
         "Figure 11",
         "sampled rotation axes on a sphere and close up, and a histogram of the angle",
-        lambda r: rotation_axis.rotation_axis(r.samples(), r.marked_poses()),
-        lambda r: rotation_axis.rotation_axis_caption(r.samples(), r.pose("hand_measured")),
+        lambda r: rotation_axis.rotation_axis(r.samples, r.marked_poses()),
+        lambda r: rotation_axis.rotation_axis_caption(r.samples, r.pose_of("hand_measured")),
     ),
     CatalogueEntry(
         "platform_sketch",
@@ -192,7 +192,7 @@ FIGURES: Final = (
         "Figure 12",
         "sampled camera positions and optical axes over a sketch of the platform from the side and the front",
         _sketch,
-        lambda r: platform_sketch.platform_sketch_caption(r.samples()),
+        lambda r: platform_sketch.platform_sketch_caption(r.samples),
         _without_outline,
     ),
     CatalogueEntry(
@@ -201,7 +201,7 @@ FIGURES: Final = (
         "Figure 13",
         "the pattern's points projected to its plane before and after the calibration",
         _mapping,
-        lambda r: mapping.mapping_caption(r.table("mapping_summary", MAPPING_SUMMARY), r.accepted()[0]),
+        lambda r: mapping.mapping_caption(r.results.table("mapping_summary", MAPPING_SUMMARY), r.inliers[0]),
         without("mapping"),
     ),
     CatalogueEntry(
@@ -210,7 +210,7 @@ FIGURES: Final = (
         "Figure 14",
         "the pattern's points projected with the calibrated pose and with one turned by a small angle",
         _angle_error,
-        lambda r: mapping.angle_error_caption(r.table("mapping_summary", MAPPING_SUMMARY), _angle_deg(r)),
+        lambda r: mapping.angle_error_caption(r.results.table("mapping_summary", MAPPING_SUMMARY), _angle_deg(r)),
         without("mapping"),
     ),
     CatalogueEntry(
@@ -228,14 +228,14 @@ FIGURES: Final = (
         "",
         "each pose parameter over the steps of the chain",
         _trace,
-        lambda r: trace.trace_caption(r.table("diagnostics", DIAGNOSTICS)),
+        lambda r: trace.trace_caption(r.results.table("diagnostics", DIAGNOSTICS)),
     ),
     CatalogueEntry(
         "autocorrelation",
         "Autocorrelation of the chain",
         "",
         "autocorrelation of each pose parameter against the lag in steps",
-        lambda r: trace.autocorrelation(r.samples()),
+        lambda r: trace.autocorrelation(r.samples),
         _diagnostics_caption,
     ),
     CatalogueEntry(
@@ -259,8 +259,8 @@ FIGURES: Final = (
         "Repeatability",
         "",
         "histogram of the distance between poses from disjoint halves of the observations",
-        lambda r: repeatability.repeatability(r.table("splits", SPLITS), _named_pair(r)),
-        lambda r: repeatability.repeatability_caption(r.table("splits", SPLITS), _named_pair(r)),
+        lambda r: repeatability.repeatability(r.results.table("splits", SPLITS), _named_pair(r)),
+        lambda r: repeatability.repeatability_caption(r.results.table("splits", SPLITS), _named_pair(r)),
         _without_splits,
     ),
     *NOISE_FIGURES,

@@ -11,8 +11,8 @@ from scipy.stats import chi
 from linepose.errors import InputError
 from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose import N_PARAMETERS
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLACK, GREY, WIDE_IN, blank_figure, styled
+from linepose.pipeline.table_checks import usable_rows
 
 _STYLES: Final = ("-", "--", "-.", ":")
 _MARKERS: Final = ("D", "v", "X", "P")

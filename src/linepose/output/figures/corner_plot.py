@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
-from linepose.output.figures.checks import usable_chain
 from linepose.output.figures.style import POSE_MARKS, WIDE_IN, pose_handles, styled
+from linepose.pipeline.table_checks import usable_chain
 
 LABELS = ("$r_x$ (m)", "$r_y$ (m)", "$r_z$ (m)", r"$\theta e_x$ (rad)", r"$\theta e_y$ (rad)", r"$\theta e_z$ (rad)")
 _TICK_MARGIN = 0.15

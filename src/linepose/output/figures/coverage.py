@@ -12,8 +12,8 @@ from scipy.stats import binom
 from linepose.estimation.noise_models import noise_model
 from linepose.experiments.coverage import N_RANKED, RANK_COLUMNS
 from linepose.experiments.coverage_summary import N_BINS, RMSE_COLUMNS, rank_histogram
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import GREY, WIDE_IN, blank_figure, styled
+from linepose.pipeline.table_checks import usable_rows
 
 _PANELS_A_ROW: Final = 4
 _PARAMETERS: Final = ("$r_x$", "$r_y$", "$r_z$", r"$\theta e_x$", r"$\theta e_y$", r"$\theta e_z$")

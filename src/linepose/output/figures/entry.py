@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from linepose.config.platform import Platform
 from linepose.experiments.registry import SECTIONS
-from linepose.output.figures.results import PlatformResults
+from linepose.pipeline.calibration import Calibration
 from linepose.tables import texts
 
 FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
@@ -26,8 +26,8 @@ class CatalogueEntry:
     title: str
     paper_figure: str
     shows: str
-    draw: Callable[[PlatformResults], Figure]
-    caption: Callable[[PlatformResults], str]
+    draw: Callable[[Calibration], Figure]
+    caption: Callable[[Calibration], str]
     left_out: Callable[[Platform], str] = lambda _: ""
 
 

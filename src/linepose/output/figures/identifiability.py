@@ -10,8 +10,8 @@ from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 from linepose.estimation.identifiability import WORDS
 from linepose.estimation.noise_models import SHARED
 from linepose.likelihood.shared import SharedPriors
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLUE, GREY, RED, SKY, WIDE_IN, blank_figure, styled
+from linepose.pipeline.table_checks import usable_rows
 
 _LEVELS: Final = ("shared_level", "white_level", "pixel_level")
 _NAMES: Final = ("a, shared by a view", "b, of a line alone", "g, of the pixel")

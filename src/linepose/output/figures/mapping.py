@@ -10,9 +10,9 @@ from matplotlib.patches import Ellipse
 from linepose.arrays import Floats
 from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
 from linepose.geometry.plane import fit_plane
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.plane_view import PlaneView, plane_view
 from linepose.output.figures.style import BLACK, GREEN, GREY, HALF_PAGE_IN, RED, blank_figure, few_ticks, styled
+from linepose.pipeline.table_checks import usable_rows
 from linepose.survey.observations import POSITION_COLUMNS
 
 _UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))

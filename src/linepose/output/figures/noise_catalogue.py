@@ -14,9 +14,9 @@ NOISE_FIGURES: Final = (
         "",
         "each pose parameter from every set of observations under each noise model, with bars of two sigmas",
         lambda r: noise_models.noise_models(
-            r.table("noise_models", NOISE_MODELS), r.pose("hand_measured"), r.true_pose
+            r.results.table("noise_models", NOISE_MODELS), r.pose_of("hand_measured"), r.true_pose
         ),
-        lambda r: noise_models.noise_models_caption(r.table("noise_models", NOISE_MODELS)),
+        lambda r: noise_models.noise_models_caption(r.results.table("noise_models", NOISE_MODELS)),
         without("noise_models"),
     ),
     CatalogueEntry(
@@ -24,8 +24,8 @@ NOISE_FIGURES: Final = (
         "Agreement of disjoint observations",
         "",
         "cumulative distribution of the distance in sigmas between poses from disjoint observations, by noise model",
-        lambda r: consistency.consistency(r.table("consistency", CONSISTENCY)),
-        lambda r: consistency.consistency_caption(r.table("consistency_summary", CONSISTENCY_SUMMARY)),
+        lambda r: consistency.consistency(r.results.table("consistency", CONSISTENCY)),
+        lambda r: consistency.consistency_caption(r.results.table("consistency_summary", CONSISTENCY_SUMMARY)),
         without("noise_models"),
     ),
     CatalogueEntry(
@@ -33,8 +33,8 @@ NOISE_FIGURES: Final = (
         "Weights of the robust noise model",
         "",
         "bars of each view's weight above a matrix of each point's, observations across",
-        lambda r: weights.weights(r.table("weights", WEIGHTS)),
-        lambda r: weights.weights_caption(r.table("weights", WEIGHTS)),
+        lambda r: weights.weights(r.results.table("weights", WEIGHTS)),
+        lambda r: weights.weights_caption(r.results.table("weights", WEIGHTS)),
         without("noise_models"),
     ),
     CatalogueEntry(
@@ -43,10 +43,10 @@ NOISE_FIGURES: Final = (
         "",
         "bars of posterior over prior sigma of each parameter, and intervals of the inferred levels on their priors",
         lambda r: identifiability.identifiability(
-            r.table("identifiability", IDENTIFIABILITY), r.table("noise_models", NOISE_MODELS)
+            r.results.table("identifiability", IDENTIFIABILITY), r.results.table("noise_models", NOISE_MODELS)
         ),
         lambda r: identifiability.identifiability_caption(
-            r.table("identifiability", IDENTIFIABILITY), r.table("noise_models", NOISE_MODELS)
+            r.results.table("identifiability", IDENTIFIABILITY), r.results.table("noise_models", NOISE_MODELS)
         ),
         without("noise_models"),
     ),

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from linepose.arrays import Floats
 from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import GREY, WIDE_IN, blank_figure, styled
+from linepose.pipeline.table_checks import usable_rows
 
 _NAMES: Final = ("$r_x$ (m)", "$r_y$ (m)", "$r_z$ (m)", *(rf"$\theta e_{axis}$ (rad)" for axis in "xyz"))
 _SPREAD: Final = 0.5  # of a row, over which the models are laid out

@@ -8,8 +8,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
 from linepose.estimation.outliers import removal_order
-from linepose.output.figures.checks import accepted_rows, usable_rows
 from linepose.output.figures.style import RED, WIDE_IN, blank_figure, styled
+from linepose.pipeline.table_checks import accepted_rows, usable_rows
 
 _COLUMNS = ("n_observations", "observation", "error_px", "removed", "accepted")
 _LEAST_PX = 0.1

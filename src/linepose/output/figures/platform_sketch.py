@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 from linepose.arrays import Floats
 from linepose.config.outline import OutlineSection, OutlineViewSection
 from linepose.geometry.rotations import matrix_from_rotation_vector
-from linepose.output.figures.checks import some_rows, usable_chain
 from linepose.output.figures.style import (
     BLACK,
     BLUE,
@@ -28,6 +27,8 @@ from linepose.output.figures.style import (
     pose_handles,
     styled,
 )
+from linepose.output.figures.thinning import some_rows
+from linepose.pipeline.table_checks import usable_chain
 
 _SHOWN_AXES: Final = 200
 _AXIS_LENGTH_M: Final = 1.5

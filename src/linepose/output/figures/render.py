@@ -7,24 +7,24 @@ import pandas as pd
 from linepose.errors import LineposeError
 from linepose.output.figures.catalogue import FIGURES
 from linepose.output.figures.entry import CatalogueEntry
-from linepose.output.figures.results import PlatformResults
 from linepose.output.figures.style import save
+from linepose.pipeline.calibration import Calibration
 
 
-def render_figures(results: PlatformResults, folder: Path) -> pd.DataFrame:
+def render_figures(calibration: Calibration, folder: Path) -> pd.DataFrame:
     """Draw every figure of the catalogue into a folder, PNG and PDF; one row a figure, drawn or left out.
 
     Columns as in `FIGURES`: where `left_out` has a sentence there is no file.
     """
-    return pd.DataFrame([_render(entry, results, folder) for entry in FIGURES])
+    return pd.DataFrame([_render(entry, calibration, folder) for entry in FIGURES])
 
 
-def _render(entry: CatalogueEntry, results: PlatformResults, folder: Path) -> dict[str, str]:
-    caption, left_out = "", entry.left_out(results.platform)
+def _render(entry: CatalogueEntry, calibration: Calibration, folder: Path) -> dict[str, str]:
+    caption, left_out = "", entry.left_out(calibration.platform_file)
     if not left_out:
         try:
-            caption = entry.caption(results)
-            save(entry.draw(results), folder / entry.name)
+            caption = entry.caption(calibration)
+            save(entry.draw(calibration), folder / entry.name)
         except LineposeError as error:
             caption, left_out = "", f"This figure could not be drawn. {error}."
     return {
@@ -32,6 +32,6 @@ def _render(entry: CatalogueEntry, results: PlatformResults, folder: Path) -> di
         "title": entry.title,
         "paper_figure": entry.paper_figure,
         "caption": caption,
-        "alt": f"{results.name}: {entry.shows}.",
+        "alt": f"{calibration.name}: {entry.shows}.",
         "left_out": left_out,
     }

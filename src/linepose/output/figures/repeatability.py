@@ -9,8 +9,8 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.experiments.splits import known_distances, sigma_factor
 from linepose.geometry.pose import N_PARAMETERS
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLACK, BLUE, GREY, HALF_PAGE_IN, RED, blank_figure, styled
+from linepose.pipeline.table_checks import usable_rows
 
 
 @styled

@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from linepose.output.figures.checks import stage_rows, usable_rows
 from linepose.output.figures.style import BLACK, BLUE, GREY, SKY, WIDE_IN, blank_figure, styled
 from linepose.pipeline.residual_tables import intraclass_correlation
+from linepose.pipeline.table_checks import stage_rows, usable_rows
 
 _COLUMNS = ("stage", "observation", "point", "error_px", "error_u_px", "error_v_px", "sigma_px")
 _SPREAD = 0.5  # of a slot, over which the dots of one group are laid out

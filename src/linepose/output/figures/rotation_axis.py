@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from scipy.stats import gaussian_kde
 
 from linepose.arrays import Floats
-from linepose.output.figures.checks import some_rows, usable_chain
 from linepose.output.figures.style import (
     BLACK,
     GREY,
@@ -23,6 +22,8 @@ from linepose.output.figures.style import (
     pose_handles,
     styled,
 )
+from linepose.output.figures.thinning import some_rows
+from linepose.pipeline.table_checks import usable_chain
 
 _MOST_DOTS: Final = 3000
 _VIEWED_FROM_DEG: Final = (15.0, 25.0)  # above and beside the mean axis

@@ -15,8 +15,8 @@ from linepose.inputs.observed_points import SCAN_POINTS, select_scans
 from linepose.inputs.scans.scan_files import Intensity, read_intensity
 from linepose.inputs.source import ScansSection
 from linepose.inputs.targets.board_in_scan import BoardInScan, fit_board
-from linepose.output.figures.checks import usable_rows
-from linepose.output.figures.results import PlatformResults
+from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.table_checks import usable_rows
 from linepose.survey.pattern import SHEET_M, board_points
 
 _FEWEST_POINTS: Final = 6
@@ -40,18 +40,19 @@ class ScanExample:
         return self.board.position(corners * SHEET_M)
 
 
-def scan_examples(results: PlatformResults, table: str) -> list[ScanExample]:
+def scan_examples(calibration: Calibration, table: str) -> list[ScanExample]:
     """Up to three accepted observations with the points of a table such as `points`; at least one.
 
     Raises InputError where the platform has no scans.
     """
-    source, folder = results.platform.source, results.data_folder
+    platform, folder = calibration.platform, calibration.data_folder
+    source = platform.source if platform else None
     if not isinstance(source, ScansSection) or folder is None:
-        raise InputError(results.name, "no scans", "scan images", "give source.scans in the platform's file")
+        raise InputError(calibration.name, "no scans", "scan images", "give source.scans in the platform's file")
     points = usable_rows(
-        results.table(table, SCAN_POINTS), ("observation", "point", "u_px", "line"), f"{table}.parquet"
+        calibration.results.table(table, SCAN_POINTS), ("observation", "point", "u_px", "line"), f"{table}.parquet"
     )
-    views = {number: points[points["observation"] == number] for number in results.accepted()}
+    views = {number: points[points["observation"] == number] for number in calibration.inliers}
     boards = {number: board_of(view) for number, view in views.items() if len(view) >= _FEWEST_POINTS}
     if not boards:
         expected = f"an accepted observation with {_FEWEST_POINTS} points"

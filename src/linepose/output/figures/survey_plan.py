@@ -8,8 +8,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
 from linepose.arrays import Floats
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLACK, GREEN, GREY, HALF_PAGE_IN, blank_figure, few_ticks, styled
+from linepose.pipeline.table_checks import usable_rows
 from linepose.survey.body_angles import body_angles_rad
 from linepose.survey.observations import POSITION_COLUMNS, Survey
 

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from linepose.arrays import Floats
 from linepose.estimation.diagnostics import MINIMUM_STEPS_PER_TIME
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.output.figures.checks import stage_rows, usable_rows
 from linepose.output.figures.corner_plot import LABELS
 from linepose.output.figures.style import (
     BLACK,
@@ -31,6 +30,7 @@ from linepose.output.figures.style import (
     styled,
 )
 from linepose.pipeline.stages import samples_from_table
+from linepose.pipeline.table_checks import stage_rows, usable_rows
 
 _COLOURS = (BLUE, RED, GREEN, SKY, ORANGE, PURPLE)
 _SHOWN_WALKERS = 5

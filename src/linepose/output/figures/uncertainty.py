@@ -7,8 +7,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from linepose.geometry.pose import SIGMA_COLUMNS
-from linepose.output.figures.checks import stage_rows, usable_rows
 from linepose.output.figures.style import BLACK, BLUE, GREEN, HALF_PAGE_IN, RED, blank_figure, styled
+from linepose.pipeline.table_checks import stage_rows, usable_rows
 
 _COLOURS = (BLUE, RED, GREEN)
 _MARKERS = ("o", "s", "^")

@@ -5,8 +5,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from linepose.output.figures.checks import usable_rows
 from linepose.output.figures.style import BLUE, RED, WIDE_IN, blank_figure, styled
+from linepose.pipeline.table_checks import usable_rows
 
 _COLUMNS = ("observation", "point", "view_weight", "point_weight", "removed")
 

@@ -4,22 +4,22 @@ import numpy as np
 
 from linepose.experiments.clock_offset import CLOCK_OFFSET
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sections import SectionOnPage, TableOnPage
+from linepose.pipeline.calibration import Calibration
 
 
-def clocks_section(results: PlatformResults) -> SectionOnPage | None:
+def clocks_section(calibration: Calibration) -> SectionOnPage | None:
     """The section; None where the experiment was not asked for."""
-    if not results.has("clock_offset"):
+    if not calibration.results.has("clock_offset"):
         return None
-    row = results.table("clock_offset", CLOCK_OFFSET).iloc[0]
+    row = calibration.results.table("clock_offset", CLOCK_OFFSET).iloc[0]
     sigmas = [f"{1e3 * row['sampled_sigma_s']:.1f} ms from samples of the noise model"]
     if np.isfinite(row["jackknife_sigma_s"]):
         sigmas.append(f"{1e3 * row['jackknife_sigma_s']:.1f} ms from leaving out one observation at a time")
     advice = f" What to do: {row['advice']}" if row["advice"] else ""
     warning = "" if row["identifiable"] else "Warning: "
     text = f"{warning}{row['verdict']}{advice} One sigma is the larger of {' and '.join(sigmas)}."
-    anchor = f"{results.name}-clock-offset"
+    anchor = f"{calibration.name}-clock-offset"
     poses = [
         [
             name.rsplit("_", 1)[0].replace("theta_", "theta e_") + (" (m)" if name.endswith("_m") else " (rad)"),

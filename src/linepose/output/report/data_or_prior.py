@@ -7,8 +7,8 @@ import numpy as np
 from linepose.estimation.identifiability import WORDS
 from linepose.experiments.prior import PRIOR_TABLE
 from linepose.geometry.pose import N_PARAMETERS
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sections import SectionOnPage, TableOnPage
+from linepose.pipeline.calibration import Calibration
 
 _WITH: Final = (
     "The hand measurement is a prior of the pose. The weight is the data's share of what is known: near 1 the data "
@@ -23,11 +23,11 @@ _WITHOUT: Final = (
 _OTHERS: Final = " Levels and intrinsics always have a prior, which is the noise model's and the camera's."
 
 
-def decided_section(results: PlatformResults) -> SectionOnPage | None:
+def decided_section(calibration: Calibration) -> SectionOnPage | None:
     """The section; None where the result was not made."""
-    if not results.has("prior"):
+    if not calibration.results.has("prior"):
         return None
-    table = results.table("prior", PRIOR_TABLE)
+    table = calibration.results.table("prior", PRIOR_TABLE)
     rows = [
         [
             _name(row["parameter"]),
@@ -42,7 +42,7 @@ def decided_section(results: PlatformResults) -> SectionOnPage | None:
     counted_in = bool(table["prior_counted_in"].iloc[0])
     known = ["Estimate minus prior", "Prior's sigma"] if counted_in else ["Estimate minus hand", "Sigma by hand"]
     heads = ["Parameter", known[0], "Sigma", known[1], "Weight of the data", "Decided by"]
-    anchor = f"{results.name}-decided"
+    anchor = f"{calibration.name}-decided"
     title = "Data or prior" if counted_in else "Data or hand measurement"
     sentence = f"{_count(table['decided_by'])}."
     on_page = TableOnPage(f"{anchor}-table", title, sentence, heads, rows, folded=False)

@@ -12,8 +12,8 @@ from linepose.experiments.consistency import CONSISTENCY_SUMMARY
 from linepose.experiments.noise_models import ALL, IDENTIFIABILITY, INLIERS, NOISE_MODELS
 from linepose.experiments.noise_models import SECTION as NOISE_MODELS_SECTION
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sections import SectionOnPage, TableOnPage
+from linepose.pipeline.calibration import Calibration
 
 _POSE_HEADS: Final = ("r_x (m)", "r_y (m)", "r_z (m)", "theta e_x (rad)", "theta e_y (rad)", "theta e_z (rad)")
 _LEVELS: Final = ("shared_level", "white_level", "pixel_level")
@@ -22,14 +22,14 @@ _FAR: Final = 0.999  # content of the region around the shared estimate, beyond 
 _WELL_MATCHED: Final = (0.8, 1.25)  # factors on the sigmas that are no reason to change them
 
 
-def noise_models_section(results: PlatformResults) -> SectionOnPage | None:
+def noise_models_section(calibration: Calibration) -> SectionOnPage | None:
     """The section of a platform whose file asks for the experiment, None otherwise."""
-    if not NOISE_MODELS_SECTION.of(results.platform):
+    if not NOISE_MODELS_SECTION.of(calibration.platform_file):
         return None
-    estimates = results.table("noise_models", NOISE_MODELS)
-    summary = results.table("consistency_summary", CONSISTENCY_SUMMARY)
-    identified = results.table("identifiability", IDENTIFIABILITY)
-    anchor = f"{results.name}-noise-models"
+    estimates = calibration.results.table("noise_models", NOISE_MODELS)
+    summary = calibration.results.table("consistency_summary", CONSISTENCY_SUMMARY)
+    identified = calibration.results.table("identifiability", IDENTIFIABILITY)
+    anchor = f"{calibration.name}-noise-models"
     tables = [
         pose_table(f"{anchor}-poses", estimates),
         level_table(f"{anchor}-levels", estimates),

@@ -3,14 +3,14 @@
 from collections.abc import Callable
 from typing import Final
 
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.clocks import clocks_section
 from linepose.output.report.data_or_prior import decided_section
 from linepose.output.report.noise_models import noise_models_section
 from linepose.output.report.sections import SectionOnPage
 from linepose.output.report.sensitivity import dependence_section
+from linepose.pipeline.calibration import Calibration
 
-_SECTIONS: Final[tuple[Callable[[PlatformResults], SectionOnPage | None], ...]] = (
+_SECTIONS: Final[tuple[Callable[[Calibration], SectionOnPage | None], ...]] = (
     decided_section,
     noise_models_section,
     dependence_section,
@@ -18,6 +18,6 @@ _SECTIONS: Final[tuple[Callable[[PlatformResults], SectionOnPage | None], ...]] 
 )
 
 
-def platform_sections(results: PlatformResults) -> list[SectionOnPage]:
+def platform_sections(calibration: Calibration) -> list[SectionOnPage]:
     """Every section for which the platform has results."""
-    return [section for make in _SECTIONS if (section := make(results)) is not None]
+    return [section for make in _SECTIONS if (section := make(calibration)) is not None]

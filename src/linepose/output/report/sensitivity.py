@@ -9,19 +9,19 @@ from linepose.experiments.sensitivity import SENSITIVITY
 from linepose.experiments.subsets import SUBSETS
 from linepose.geometry.distance import pose_difference
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sections import SectionOnPage, TableOnPage
+from linepose.pipeline.calibration import Calibration
 
 _HEADS = ("Change", "Observations", "Forward (mm)", "Right (mm)", "Down (mm)", "Turn (°)", "Together (sigmas)")
 
 
-def dependence_section(results: PlatformResults) -> SectionOnPage | None:
+def dependence_section(calibration: Calibration) -> SectionOnPage | None:
     """What the experiments on settings and on the choice of observations found, as far as they were run."""
-    pose = results.pose("inliers")
+    pose = calibration.pose_of("inliers")
     tables: list[TableOnPage] = []
     told: list[str] = []
-    if results.has("sensitivity"):
-        changes = results.table("sensitivity", SENSITIVITY)
+    if calibration.results.has("sensitivity"):
+        changes = calibration.results.table("sensitivity", SENSITIVITY)
         changes = changes.iloc[1:]  # after the nominal one
         farthest = changes.loc[changes["distance_m"].idxmax()]
         told.append(
@@ -29,9 +29,9 @@ def dependence_section(results: PlatformResults) -> SectionOnPage | None:
             f"{1e3 * farthest['distance_m']:.0f} mm and {np.degrees(farthest['angle_rad']):.2f}°."
         )
         rows = _rows(changes["change"], changes, changes["mahalanobis"], pose)
-        tables.append(_table(results.name, "settings", "Other settings and data", rows))
-    if results.has("leave_one_out"):
-        without = results.table("leave_one_out", LEAVE_ONE_OUT)
+        tables.append(_table(calibration.name, "settings", "Other settings and data", rows))
+    if calibration.results.has("leave_one_out"):
+        without = calibration.results.table("leave_one_out", LEAVE_ONE_OUT)
         without = without.sort_values("influence", ascending=False)
         told.append(
             f"Without observation {without['left_out'].iloc[0]} it moves by {1e3 * without['distance_m'].iloc[0]:.0f} "
@@ -40,17 +40,20 @@ def dependence_section(results: PlatformResults) -> SectionOnPage | None:
         names = without["left_out"].map("without {}".format)
         tables.append(
             _table(
-                results.name, "left-out", "Without one observation", _rows(names, without, without["influence"], pose)
+                calibration.name,
+                "left-out",
+                "Without one observation",
+                _rows(names, without, without["influence"], pose),
             )
         )
-    if results.has("subsets"):
-        subsets = results.table("subsets", SUBSETS)
+    if calibration.results.has("subsets"):
+        subsets = calibration.results.table("subsets", SUBSETS)
         rows = _rows(subsets["subset"], subsets, pd.Series(np.nan, subsets.index), pose)
-        tables.append(_table(results.name, "subsets", "Subsets of the observations", rows))
+        tables.append(_table(calibration.name, "subsets", "Subsets of the observations", rows))
     if not tables:
         return None
     text = f"How the pose moves when something else changes. {' '.join(told)}"
-    return SectionOnPage(f"{results.name}-depends", "What the pose depends on", text.strip(), tables)
+    return SectionOnPage(f"{calibration.name}-depends", "What the pose depends on", text.strip(), tables)
 
 
 def _rows(names: pd.Series, estimates: pd.DataFrame, sigmas: pd.Series, pose: Floats) -> list[list[str]]:

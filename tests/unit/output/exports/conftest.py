@@ -6,7 +6,7 @@ import pytest
 from linepose.config.platform import Platform
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.geometry.rotations import matrix_from_rotation_vector
-from linepose.output.exports import export_platform
+from linepose.pipeline.calibration import Calibration
 from unit import made_up
 
 
@@ -20,8 +20,9 @@ class Made:
         self.matrix[:3, :3] = matrix_from_rotation_vector(made_up.OPTIMUM[3:])
         self.matrix[:3, 3] = made_up.OPTIMUM[:3]
 
-    def export(self, format: str, output: Path, **keywords) -> Path:
-        return export_platform(self.results, self.platform, "made-up", format, output, **keywords)
+    def export(self, format: str, output: Path, stage: str = "inliers", **options) -> Path:
+        calibration = Calibration.from_results(self.results / "made-up", self.platform, stage=stage)
+        return calibration.export(format, output, **options)
 
 
 @pytest.fixture(scope="session")

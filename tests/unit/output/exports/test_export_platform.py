@@ -1,7 +1,8 @@
 import pytest
 
 from linepose.errors import InputError
-from linepose.output.exports import EXPORTS, ExportOptions, export_platform
+from linepose.output.exports import EXPORTS, ExportOptions
+from linepose.pipeline.calibration import Calibration
 from unit import made_up
 
 
@@ -17,7 +18,7 @@ def test_a_folder_gets_a_file_of_the_format_s_name(made, tmp_path, format):
 def test_before_a_run_the_message_says_what_to_run(tmp_path, format):
     platform = made_up.platform(map_frame={"crs": "EPSG:32756"})
     with pytest.raises(InputError, match=r"run `linepose run robot` first"):
-        export_platform(tmp_path / "results", platform, "robot", format, tmp_path / "out")
+        Calibration.from_results(tmp_path / "results" / "robot", platform).export(format, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 

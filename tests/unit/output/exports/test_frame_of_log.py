@@ -8,6 +8,7 @@ from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.inputs.local_frame import MAP_FRAME
 from linepose.output.exports.points import frame_of
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.load import map_frame_table
 from linepose.tables import read_table, write_table
 from unit import made_up
@@ -56,9 +57,11 @@ def test_results_keep_what_the_log_said_and_the_platform_s_file_comes_first(tmp_
     ):
         table = pd.DataFrame([values], columns=MAP_FRAME.names)
         write_table(table, tmp_path / "robot" / "map_frame.parquet", MAP_FRAME)
-        frame = frame_of(tmp_path, made_up.platform(), "robot")
+        frame = frame_of(Calibration.from_results(tmp_path / "robot", made_up.platform()))
         assert (frame.name, frame.origin) == expected
-        named = frame_of(tmp_path, made_up.platform(map_frame={"crs": "EPSG:32601"}), "robot")
+        named = frame_of(
+            Calibration.from_results(tmp_path / "robot", made_up.platform(map_frame={"crs": "EPSG:32601"}))
+        )
         assert (named.name, named.origin) == ("EPSG:32601", None)
 
 
@@ -68,4 +71,4 @@ def test_a_log_in_metres_says_nothing(tmp_path):
     (tmp_path / "robot").mkdir()
     (tmp_path / "x.parquet").rename(tmp_path / "robot" / "map_frame.parquet")
     with pytest.raises(InputError, match="map_frame: found nothing"):
-        frame_of(tmp_path, made_up.platform(), "robot")
+        frame_of(Calibration.from_results(tmp_path / "robot", made_up.platform()))

@@ -11,7 +11,7 @@ from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE
 from linepose.inputs import local_frame
 from linepose.inputs.local_frame import MAP_FRAME, geodetic_from_local, local_from_geodetic, tangent_frame
 from linepose.inputs.navigation import read_navigation
-from linepose.output.exports import export_platform
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.load import map_frame_table
 from linepose.survey.observations import POSITION_COLUMNS
 from linepose.tables import write_table
@@ -79,7 +79,7 @@ def test_a_log_s_places_come_back_from_the_map_files(tmp_path, format, place):
     write_points(folder, read_navigation(platform.source, tmp_path).log.position_m)
     local_frame._pipeline.cache_clear()  # the map is made by another process than the one that read the log
     for name in ("geojson", "geopackage"):
-        path = export_platform(tmp_path / "results", platform, "robot", name, tmp_path)
+        path = Calibration.from_results(folder, platform).export(name, tmp_path)
         read = geopandas.read_file(path, **({"layer": "estimated_points"} if name == "geopackage" else {}))
         points = read[read["layer"] == "estimated_points"] if name == "geojson" else read
         distance, height = apart_m(points.to_crs(4979), geodetic)
@@ -100,7 +100,7 @@ def test_the_case_of_sydney(tmp_path):
     write_table(map_frame_table(platform, tmp_path), folder / "map_frame.parquet", MAP_FRAME)
     write_points(folder, np.zeros((1, 3)))
     local_frame._pipeline.cache_clear()
-    points = geopandas.read_file(export_platform(tmp_path / "results", platform, "robot", "geojson", tmp_path))
+    points = geopandas.read_file(Calibration.from_results(folder, platform).export("geojson", tmp_path))
     assert (points.geometry.x[0], points.geometry.y[0]) == pytest.approx((151.2, -33.9), abs=1e-8)
     easting, northing = Transformer.from_crs(4326, 32756, always_xy=True).transform(151.2, -33.9)
     assert points.loc[0, ["easting_m", "northing_m"]].tolist() == pytest.approx([easting, northing], abs=CENTIMETRE)

@@ -12,9 +12,8 @@ from pytransform3d.urdf import UrdfTransformManager
 from scipy.spatial.transform import Rotation
 
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.output.exports import ExportOptions
-from linepose.output.exports.calibration import Calibration
-from linepose.output.exports.urdf import write_urdf
+from linepose.pipeline.calibration import HAND_MEASURED, Calibration
+from linepose.pipeline.results import Results
 from unit import made_up
 
 FLU = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -29,8 +28,8 @@ def test_urdf_joint_is_the_pose_in_the_axes_of_ros(made, tmp_path):
 
 
 def test_urdf_in_our_axes_and_with_other_names(made, tmp_path):
-    options = ExportOptions("imu/body", "scanner", "frd")
-    text = made.export("urdf", tmp_path / "camera.urdf", options=options).read_text()
+    names = {"parent_frame": "imu/body", "child_frame": "scanner", "body_axes": "frd"}
+    text = made.export("urdf", tmp_path / "camera.urdf", **names).read_text()
     robot = UrdfTransformManager()
     robot.load_urdf(text)
     np.testing.assert_allclose(robot.get_transform("scanner", "imu/body"), made.matrix, **CLOSE)
@@ -43,7 +42,11 @@ def test_urdf_holds_the_rotation_where_roll_and_yaw_are_one(tmp_path, pitch_deg)
     expected = np.eye(4)
     expected[:3, :3] = Rotation.from_euler("ZYX", [-90.0, pitch_deg, 10.0], degrees=True).as_matrix()
     pose = np.concatenate([np.zeros(3), Rotation.from_matrix(expected[:3, :3]).as_rotvec()])
-    write_urdf(Calibration("x", "all", pose, np.eye(6), "", 1, "published"), ExportOptions(), tmp_path / "x.urdf")
+    poses = made_up.pose().query("stage == @HAND_MEASURED").copy()
+    poses[list(POSE_COLUMNS)] = pose
+    by_hand, camera = made_up.platform().hand_measured, made_up.platform().camera
+    results = Results("x", in_memory={"pose": poses})
+    Calibration(results, by_hand, camera, 5.0, "published", HAND_MEASURED).export("urdf", tmp_path, body_axes="frd")
     robot = UrdfTransformManager()
     robot.load_urdf((tmp_path / "x.urdf").read_text())
     np.testing.assert_allclose(robot.get_transform("line_camera_optical", "base_link"), expected, **CLOSE)
@@ -101,8 +104,7 @@ def test_json_says_the_same_rotation_in_four_ways(made, tmp_path):
 
 def test_covariance_in_the_axes_of_ros_is_that_of_samples_there(made, tmp_path):
     """Against samples that are converted one by one; first order is off by the spread squared, 2e-4."""
-    options = ExportOptions(body_axes="flu")
-    read = json.loads(made.export("json", tmp_path / "pose.json", options=options).read_text())
+    read = json.loads(made.export("json", tmp_path / "pose.json", body_axes="flu").read_text())
     samples = np.array(made_up.samples()[list(POSE_COLUMNS)])
     vectors = Rotation.from_matrix(FLU[:3, :3] @ Rotation.from_rotvec(samples[:, 3:]).as_matrix()).as_rotvec()
     # near pi the vector may flip its sign: taken on the side of the exported one

@@ -15,13 +15,13 @@ from PIL import Image
 
 from linepose.errors import LineposeError
 from linepose.output.figures.catalogue import FIGURES
-from linepose.output.figures.checks import usable_chain
 from linepose.output.figures.entry import FIGURES as SCHEMA
 from linepose.output.figures.render import render_figures
-from linepose.output.figures.results import PlatformResults
 from linepose.output.figures.style import HALF_PAGE_IN, LEAST_PT, PNG_DPI, blank_figure, save
 from linepose.output.report.platform_sections import platform_sections
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.summary import summarise
+from linepose.pipeline.table_checks import usable_chain
 from linepose.tables import write_table
 from unit import made_up
 
@@ -32,7 +32,7 @@ NOT_MADE = {entry.name for entry in FIGURES if entry.left_out(made_up.platform()
 def drawn(tmp_path_factory):
     folder = tmp_path_factory.mktemp("made_up")
     made_up.write_results(folder)
-    index = render_figures(PlatformResults("made_up", made_up.platform(), folder, 5.0), folder / "figures")
+    index = render_figures(Calibration.from_results(folder, made_up.platform()), folder / "figures")
     return folder, index
 
 
@@ -53,7 +53,7 @@ def test_a_broken_chain_costs_its_figures_and_no_other(drawn, tmp_path):
     chain = made_up.samples()
     chain.loc[7, "theta_x_rad"] = float("nan")
     chain.to_parquet(tmp_path / "mcmc" / "inliers.parquet")
-    index = render_figures(PlatformResults("made_up", made_up.platform(), tmp_path, 5.0), tmp_path / "figures")
+    index = render_figures(Calibration.from_results(tmp_path, made_up.platform()), tmp_path / "figures")
     left_out = index.set_index("figure")["left_out"]
     lost = {"corner", "rotation_axis", "platform_sketch", "trace", "autocorrelation"}
     assert set(left_out[left_out != ""].index) == NOT_MADE | lost
@@ -65,7 +65,7 @@ def test_what_was_not_asked_for_is_said_and_what_is_missing_is_named(tmp_path):
     made_up.write_results(tmp_path)
     (tmp_path / "uncertainty.parquet").unlink()
     platform = made_up.platform(outline=None, experiments={"basin": None, "mapping": None, "repeatability": None})
-    index = render_figures(PlatformResults("made_up", platform, tmp_path, 5.0), tmp_path / "figures")
+    index = render_figures(Calibration.from_results(tmp_path, platform), tmp_path / "figures")
     left_out = index.set_index("figure")["left_out"]
     for name, word in {
         "basin": "experiments.basin",
@@ -74,16 +74,16 @@ def test_what_was_not_asked_for_is_said_and_what_is_missing_is_named(tmp_path):
         "repeatability": "splits",
         "platform_sketch": "outline",
         "stacked_scan": "no scans",
-        "uncertainty": "no such file",
+        "uncertainty": "no such result",
     }.items():
         assert word in left_out[name]
 
 
 def reads(reader, folder):
     """What a figure, a caption or a part of the page reads."""
-    results = PlatformResults("made_up", made_up.platform(), folder, 5.0)
+    results = Calibration.from_results(folder, made_up.platform())
     reader(results)
-    return set(results._read)
+    return set(results.results._read)
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +104,7 @@ def test_a_result_of_which_one_row_is_left_is_told_by_an_error_of_ours_or_still_
     for maker, tables in readers:
         if name in tables:
             with suppress(LineposeError):
-                made = maker(PlatformResults("made_up", made_up.platform(), folder, 5.0))
+                made = maker(Calibration.from_results(folder, made_up.platform()))
                 assert not isinstance(made, str) or "nan" not in made
 
 
@@ -122,7 +122,7 @@ def test_a_spoilt_result_is_named_with_what_is_wrong(tmp_path, spoil, told):
     table = pd.concat([made_up.residuals(), made_up.residuals().iloc[:8].assign(stage="all")])
     spoil(table).to_parquet(tmp_path / "residuals.parquet")
     with pytest.raises(LineposeError, match=told):
-        summarise(PlatformResults("made_up", made_up.platform(), tmp_path, 5.0))
+        summarise(Calibration.from_results(tmp_path, made_up.platform()))
 
 
 def test_a_chain_that_stands_still_is_told_rather_than_drawn():
@@ -133,7 +133,7 @@ def test_a_chain_that_stands_still_is_told_rather_than_drawn():
 @pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in NOT_MADE], ids=lambda e: e.name)
 def test_text_can_be_read_where_the_figure_is_printed_at_half_a_page(drawn, entry):
     folder, _ = drawn
-    figure = entry.draw(PlatformResults("made_up", made_up.platform(), folder, 5.0))
+    figure = entry.draw(Calibration.from_results(folder, made_up.platform()))
     figure.draw_without_rendering()
     shrunk = min(1.0, HALF_PAGE_IN / figure.get_figwidth())
     texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
@@ -153,12 +153,12 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 from linepose.output.figures.render import render_figures
-from linepose.output.figures.checks import usable_chain
-from linepose.output.figures.results import PlatformResults
+from linepose.pipeline.table_checks import usable_chain
+from linepose.pipeline.calibration import Calibration
 sys.path.insert(0, sys.argv[1])
 from unit import made_up
 folder = Path(sys.argv[2])
-render_figures(PlatformResults("made_up", made_up.platform(), folder, 5.0), Path(sys.argv[3]))
+render_figures(Calibration.from_results(folder, made_up.platform()), Path(sys.argv[3]))
 """
 
 

@@ -2,25 +2,25 @@ import pytest
 
 from linepose.output.figures.entry import FIGURES
 from linepose.output.figures.render import render_figures
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.assemble import platform_on_page
 from linepose.output.report.page import render_page
 from linepose.output.report.provenance import settings_text, versions
+from linepose.pipeline.calibration import Calibration
 from linepose.tables import write_table
 from unit import made_up
 
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("made_up")
+    folder = tmp_path_factory.mktemp("results") / "made-up"
     made_up.write_results(folder)
-    return PlatformResults("made-up", made_up.platform(description="Fast & <made up>"), folder, 5.0)
+    return Calibration.from_results(folder, made_up.platform(description="Fast & <made up>"))
 
 
 @pytest.fixture(scope="session")
 def page(results):
     """The whole report of one made-up platform."""
-    folder = results.folder / "figures"
+    folder = results.results.path("figures/index").parent
     write_table(render_figures(results, folder), folder / "index.parquet", FIGURES)
     one = platform_on_page(results, results.platform.model_dump(mode="json"))
     study = settings_text({"data_folders": ["data", "/home/someone/private/data"], "seed": 1})

@@ -5,9 +5,9 @@ import pytest
 
 from linepose.experiments.clock_offset import CLOCK_OFFSET
 from linepose.experiments.prior import PRIOR_TABLE
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.clocks import clocks_section
 from linepose.output.report.data_or_prior import decided_section
+from linepose.pipeline.calibration import Calibration
 from linepose.tables import write_table
 from unit import made_up
 
@@ -15,7 +15,7 @@ from unit import made_up
 def results_with(folder, **tables):
     for name, (table, schema) in tables.items():
         write_table(table, folder / f"{name}.parquet", schema)
-    return PlatformResults("made-up", made_up.platform(), folder, 5.0)
+    return Calibration.from_results(folder, made_up.platform())
 
 
 def test_who_decided_stands_in_a_table(tmp_path):

@@ -1,5 +1,7 @@
 """Which noise model to use: the paragraph says what the numbers say."""
 
+from dataclasses import replace
+
 import pytest
 
 from linepose.output.report.noise_models import noise_models_section, paragraph
@@ -59,5 +61,5 @@ def test_errors_against_the_truth_are_told_where_there_is_one(results):
 
 
 def test_a_platform_without_the_experiment_has_no_section(results):
-    without = type(results)("x", made_up.platform(experiments={}), results.folder, 5.0)
+    without = replace(results, platform=made_up.platform(experiments={}))
     assert noise_models_section(without) is None

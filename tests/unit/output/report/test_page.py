@@ -14,7 +14,7 @@ from linepose.errors import InputError
 from linepose.output.figures.catalogue import FIGURES
 from linepose.output.report.pictures import embedded
 from linepose.output.report.provenance import settings_text
-from linepose.pipeline.summary import gather_evidence, summarise, tilt_spread_deg
+from linepose.pipeline.evidence import gather_evidence, tilt_spread_deg
 from linepose.survey.observations import survey_from_table
 from unit import made_up
 
@@ -108,7 +108,7 @@ def test_nothing_is_asked_of_the_network_and_no_place_of_this_machine_is_told(re
     assert "@import" not in page
     assert "/home/someone" not in page
     assert ".../data" in page
-    assert str(results.folder) not in page
+    assert str(results.results.folder) not in page
 
 
 def test_names_from_files_are_escaped(page):
@@ -133,7 +133,7 @@ def test_settings_keep_values_and_lose_folders():
 
 
 def test_evidence_is_gathered_from_the_results(results):
-    evidence = gather_evidence(results, summarise(results).rotation_vector)
+    evidence = gather_evidence(results)
     assert (evidence.n_observations, evidence.n_accepted, evidence.n_steps) == (6, 4, 20)
     assert (evidence.worst_observation, evidence.worst_error_px) == (4, 3.0)
     assert (evidence.most_influential, evidence.influence) == (3, 1.5)

@@ -3,7 +3,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from linepose.geometry.pose import rotation_vector_pose
-from linepose.pipeline.pose_tables import PoseWithCovariance, euler_numbers, quaternion, rotation_vector_numbers
+from linepose.geometry.pose_with_covariance import PoseWithCovariance
+from linepose.pipeline.pose_tables import euler_numbers, rotation_vector_numbers
 
 POSE = np.array([0.19, -0.14, -0.79, -0.82, 0.74, -1.43])
 HAND = rotation_vector_pose([0.2, 0.0, -0.8, np.radians(-56), 0.0, np.radians(-90)])
@@ -44,7 +45,7 @@ def test_euler_angles_that_mean_nothing_are_left_out():
 
 
 def test_quaternion_turns_vectors_as_the_rotation_does():
-    w, *vector = quaternion(POSE)
+    w, *vector = ESTIMATE.quaternion_wxyz
     assert w >= 0
     v = np.array([0.3, -0.2, 0.9])
     turned = v + 2 * np.cross(vector, np.cross(vector, v) + w * v)

@@ -6,16 +6,16 @@ import pytest
 
 from linepose.experiments.sensitivity import SENSITIVITY
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.output.figures.results import PlatformResults
 from linepose.output.report.sensitivity import dependence_section
+from linepose.pipeline.calibration import Calibration
 from linepose.tables import write_table
 from unit import made_up
 
 
 @pytest.fixture
 def results(tmp_path):
-    made_up.write_results(tmp_path)
-    return PlatformResults("made-up", made_up.platform(), tmp_path, 5.0)
+    made_up.write_results(tmp_path / "made-up")
+    return Calibration.from_results(tmp_path / "made-up", made_up.platform())
 
 
 def sensitivity():
@@ -28,7 +28,7 @@ def sensitivity():
 
 
 def test_changes_are_told_in_millimetres_and_the_estimate_itself_is_no_change(results):
-    write_table(sensitivity(), results.folder / "sensitivity.parquet", SENSITIVITY)
+    write_table(sensitivity(), results.results.path("sensitivity"), SENSITIVITY)
     section = dependence_section(results)
     assert "focal length + 1 sigma moves the camera most: by 40 mm and 0.00°" in section.text
     settings = section.tables[0]
@@ -42,5 +42,5 @@ def test_the_most_influential_observation_comes_first(results):
 
 
 def test_a_platform_without_these_experiments_has_no_section(results):
-    (results.folder / "leave_one_out.parquet").unlink()
+    results.results.path("leave_one_out").unlink()
     assert dependence_section(results) is None

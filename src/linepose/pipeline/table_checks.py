@@ -1,4 +1,4 @@
-"""What a figure asks of its tables before it draws: it would rather say what is missing than show an empty axis."""
+"""What a table of results must have before it is used: rows, columns, and finite numbers."""
 
 from collections.abc import Sequence
 
@@ -52,10 +52,3 @@ def usable_chain(samples: pd.DataFrame) -> Floats:
             "look at its acceptance in diagnostics.parquet, and run its stage again",
         )
     return chain
-
-
-def some_rows(values: Floats, most: int) -> Floats:
-    """At most so many rows of samples (K, ...), drawn evenly over walkers and steps, the same at every call."""
-    if len(values) <= most:
-        return np.array(values)
-    return np.array(values[np.sort(np.random.default_rng(0).choice(len(values), most, replace=False))])

@@ -1,0 +1,33 @@
+"""A calibration in a format, whole or not at all."""
+
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linepose.errors import InputError
+from linepose.output.exports.options import ExportOptions
+from linepose.output.exports.registry import EXPORTS
+
+if TYPE_CHECKING:
+    from linepose.pipeline.calibration import Calibration
+
+
+def export_calibration(
+    calibration: "Calibration", format: str, output: Path, options: ExportOptions | None = None
+) -> Path:
+    """Write a calibration's pose, or the points it maps, in a format of EXPORTS; the path that was written.
+
+    `output` is a file, or a folder in which one is named after platform and format. The file is written whole or not at
+    all. Raises InputError for an unknown format or stage, and where the platform has not been run as far as that needs.
+    """
+    from linepose.tables import atomic_write
+
+    if format not in EXPORTS:
+        near = get_close_matches(format, EXPORTS, n=1)
+        remedy = f"did you mean {near[0]}?" if near else "choose one of them"
+        raise InputError("format", repr(format), f"one of {', '.join(EXPORTS)}", remedy)
+    chosen = EXPORTS[format]
+    path = output / f"{calibration.name}{chosen.suffix}" if output.is_dir() else output
+    with atomic_write(path) as temporary:
+        chosen.write(calibration, options or ExportOptions(), temporary)
+    return path

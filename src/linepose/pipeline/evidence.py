@@ -1,0 +1,95 @@
+"""What the verdict rests on, gathered from a calibration and from the experiments that were run on it."""
+
+from typing import Final
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+from scipy.stats import chi
+
+from linepose.geometry.pose import N_PARAMETERS
+from linepose.geometry.pose_with_covariance import PoseWithCovariance
+from linepose.pipeline.calibration import INLIERS, Calibration
+from linepose.pipeline.pose_tables import PoseNumber, rotation_vector_numbers
+from linepose.pipeline.residual_tables import intraclass_correlation
+from linepose.pipeline.results import Results
+from linepose.pipeline.table_checks import accepted_rows, stage_rows
+from linepose.pipeline.verdict import Evidence
+from linepose.survey.body_angles import body_angles_rad
+from linepose.survey.observations import Survey
+from linepose.tables import floats, optional_floats, whole_numbers
+
+# Of the experiments' results the columns that count here: what made them stands in a room above.
+_SPLITS: Final = pa.schema(optional_floats("mahalanobis"))
+_LEAVE_ONE_OUT: Final = pa.schema([*whole_numbers("left_out"), *floats("influence")])
+
+
+def pose_numbers(calibration: Calibration) -> list[PoseNumber]:
+    """The six numbers of the pose beside the hand measurement, and the truth where it is known."""
+    hand = PoseWithCovariance(calibration.hand_measured.pose, calibration.hand_measured.covariance)
+    return rotation_vector_numbers(calibration.estimate, hand, calibration.true_pose)
+
+
+def gather_evidence(calibration: Calibration) -> Evidence:
+    """The numbers that the verdict rests on, all of the accepted observations."""
+    results, numbers = calibration.results, pose_numbers(calibration)
+    optimum = _accepted_stage(calibration.optima, results, "optima").iloc[0]
+    chain = _accepted_stage(calibration.diagnostics, results, "diagnostics")
+    residuals = _accepted_stage(calibration.residuals, results, "residuals")
+    outliers = calibration.outlier_removal
+    accepted = accepted_rows(outliers)
+    worst = accepted.loc[accepted["error_px"].idxmax()]
+    farthest = max(numbers, key=lambda number: abs(number.difference_sigmas))
+    wrong = max(numbers, key=lambda number: abs(number.error_sigmas or 0.0))
+    most_influential, influence = _influence(results)
+    return Evidence(
+        n_observations=int(outliers["n_observations"].max()),
+        n_accepted=len(accepted),
+        converged=bool(optimum["converged"]),
+        n_steps=int(calibration.samples["step"].max()) + 1,
+        autocorrelation_time=float(chain["autocorrelation_time"].max()),
+        split_r_hat=float(chain["split_r_hat"].max()),
+        reduced_chi_square=float(optimum["reduced_chi_square"]),
+        intraclass_correlation=max(
+            intraclass_correlation(residuals, column) for column in ("error_u_px", "error_v_px")
+        ),
+        tilt_spread_deg=tilt_spread_deg(calibration.survey().select(calibration.inliers)),
+        worst_observation=int(worst["observation"]),
+        worst_error_px=float(worst["error_px"]),
+        threshold_px=calibration.threshold_px,
+        hand_sigmas=abs(farthest.difference_sigmas),
+        hand_parameter=farthest.name,
+        undecided=tuple(number.name for number in numbers if number.sigma >= number.hand_sigma),
+        sigma_factor=_sigma_factor(results),
+        most_influential=most_influential,
+        influence=influence,
+        truth_sigmas=None if wrong.error_sigmas is None else abs(wrong.error_sigmas),
+        truth_parameter=wrong.name,
+        noise_model=calibration.noise_model,
+    )
+
+
+def tilt_spread_deg(survey: Survey) -> float:
+    """RMS distance of the observations' (roll, pitch) from their mean, in degrees."""
+    tilt = np.degrees(body_angles_rad(survey)[:, :2])
+    return float(np.sqrt(np.mean(np.sum((tilt - tilt.mean(axis=0)) ** 2, axis=1))))
+
+
+def _accepted_stage(table: pd.DataFrame, results: Results, name: str) -> pd.DataFrame:
+    return stage_rows(table, INLIERS, [], f"{results.name}/{name}.parquet")
+
+
+def _sigma_factor(results: Results) -> float | None:
+    """What random halves want the sigmas multiplied by; None where they were not made or say nothing."""
+    if not results.has("splits"):
+        return None
+    distance = results.table("splits", _SPLITS)["mahalanobis"].dropna()
+    return float(distance.median() / chi.median(N_PARAMETERS)) if len(distance) else None
+
+
+def _influence(results: Results) -> tuple[int | None, float | None]:
+    if not results.has("leave_one_out"):
+        return None, None
+    table = results.table("leave_one_out", _LEAVE_ONE_OUT)
+    most = table.loc[table["influence"].idxmax()]
+    return int(most["left_out"]), float(most["influence"])
