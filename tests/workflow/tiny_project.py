@@ -55,9 +55,9 @@ class Project:
         for name, values in platforms.items():
             (config / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(dict(values)))
 
-    def start(self, *arguments: str, cores: int = 2) -> subprocess.Popen[str]:
+    def start(self, *arguments: str, cores: int = 2, snakefile: Path = ROOT / "Snakefile") -> subprocess.Popen[str]:
         """The workflow, begun in a session of its own, so that all its processes can be killed at once."""
-        command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]
+        command = [sys.executable, "-m", "snakemake", "--snakefile", str(snakefile), "--cores", str(cores)]
         path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
         return subprocess.Popen(
             [*command, *arguments],
@@ -69,8 +69,10 @@ class Project:
             start_new_session=True,
         )
 
-    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
-        started = self.start(*arguments, cores=cores)
+    def run(
+        self, *arguments: str, cores: int = 2, snakefile: Path = ROOT / "Snakefile"
+    ) -> subprocess.CompletedProcess[str]:
+        started = self.start(*arguments, cores=cores, snakefile=snakefile)
         output, error = started.communicate(timeout=600)
         return subprocess.CompletedProcess(started.args, started.returncode, output, error)
 
