@@ -2,8 +2,6 @@
 
 from typing import Any, Final
 
-from pydantic import BaseModel
-
 import linepose
 
 project = "linepose"
@@ -28,17 +26,6 @@ autodoc_default_options = {"exclude-members": "model_config"}
 numpydoc_show_class_members = False
 
 _PAGES_OF_THE_ROOT: Final = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
-_BEFORE_NUMPYDOC: Final = 400  # numpydoc takes docstrings apart at priority 500
-
-
-def add_settings(_app: Any, what: str, _name: str, obj: Any, _options: Any, lines: list[str]) -> None:
-    """Append a settings class's keys to its docstring, as numpydoc has them: name, default, description."""
-    if what != "class" or not issubclass(obj, BaseModel):
-        return
-    lines += ["", "Parameters", "----------"]
-    for name, field in obj.model_fields.items():
-        default = "required" if field.is_required() else f"default {field.get_default(call_default_factory=True)!r}"
-        lines += [f"{name} : {default}", f"    {field.description or ''}"]
 
 
 def lead_to_site(_app: Any, _path: Any, _page: str, content: list[str]) -> None:
@@ -48,6 +35,5 @@ def lead_to_site(_app: Any, _path: Any, _page: str, content: list[str]) -> None:
 
 
 def setup(app: Any) -> None:
-    """Register both."""
+    """Let links of included pages be led."""
     app.connect("include-read", lead_to_site)
-    app.connect("autodoc-process-docstring", add_settings, priority=_BEFORE_NUMPYDOC)
