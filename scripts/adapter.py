@@ -5,10 +5,14 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from linepose.errors import LineposeError
-from linepose.pipeline.parent_process import exit_with_parent
+from linepose.pipeline.parent_process import SNAKEMAKE, exit_with_process
+from linepose.pipeline.provenance import FOR_THE_ORDER_ALONE, Provenance, provenance_of_job
+from linepose.pipeline.run_lock import hold_job_lock
+from linepose.tables import mark_tables
 
 _HUSHED = ("numba", "matplotlib", "fontTools", "PIL")
 
@@ -18,9 +22,11 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     """Run a stage: its messages go to the rule's log and to the terminal; a fault ends the job with one line.
 
     `job` is the `snakemake` object of the script. Tracebacks of unforeseen faults go to the log and the terminal.
-    When Snakemake is killed the job ends too, or it would be in the way of the run that goes on.
+    Each table that it writes says which settings, inputs and code made it. When Snakemake is killed the job ends too,
+    or it would be in the way of the run that goes on.
     """
-    exit_with_parent(os.getppid())
+    exit_with_process(SNAKEMAKE)
+    hold_job_lock(Path())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(job.threads))
     log = logging.getLogger(f"linepose.{job.rule}")
     logging.basicConfig(
@@ -30,6 +36,8 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     )
     for name in _HUSHED:
         logging.getLogger(name).setLevel(logging.WARNING)
+    if any(Path(file).suffix in (".parquet", "") for file in job.output):
+        mark_tables(_provenance(job).text())
     try:
         yield log
     except LineposeError as error:
@@ -38,3 +46,9 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     except Exception:
         log.exception("unforeseen fault: please report it with this log")
         sys.exit(1)
+
+
+def _provenance(job: Any) -> Provenance:
+    found = [job.input.get(name, []) for name in FOR_THE_ORDER_ALONE]
+    order_alone = {file for files in found for file in ([files] if isinstance(files, str) else files)}
+    return provenance_of_job(dict(job.params.items()), [file for file in job.input if file not in order_alone])

@@ -5,12 +5,30 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Final
 
 import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from linepose.errors import InputError
+
+_MARK: Final = b"linepose"
+_marks: dict[bytes, bytes] = {}
+
+
+def mark_tables(text: str) -> None:
+    """From now on, each table that this process writes carries this text: what made it."""
+    _marks[_MARK] = text.encode()
+
+
+def read_mark(path: Path | str) -> str | None:
+    """The text that a table on disk carries; None where there is none, or no Parquet file."""
+    try:
+        metadata = pq.read_schema(path).metadata or {}
+    except (OSError, pa.ArrowException):
+        return None
+    return metadata[_MARK].decode() if _MARK in metadata else None
 
 
 @contextmanager
@@ -30,7 +48,10 @@ def atomic_write(path: Path | str) -> Iterator[Path]:
 
 
 def write_table(table: pd.DataFrame, path: Path | str, schema: pa.Schema) -> None:
-    """Write a table as Parquet in the schema's columns and order; raises InputError where it does not fit."""
+    """Write a table as Parquet in the schema's columns and order, with the mark of `mark_tables`.
+
+    Raises InputError where it does not fit.
+    """
     try:
         arrow = pa.Table.from_pandas(table, schema=schema, preserve_index=False)
     except (KeyError, ValueError, pa.ArrowException) as error:
@@ -40,7 +61,7 @@ def write_table(table: pd.DataFrame, path: Path | str, schema: pa.Schema) -> Non
     if unknown:
         raise InputError(str(path), f"columns {sorted(unknown)}", f"columns {schema.names}", "mend the result")
     with atomic_write(path) as temporary:
-        pq.write_table(arrow.replace_schema_metadata(None), temporary, compression="zstd")
+        pq.write_table(arrow.replace_schema_metadata(dict(_marks) or None), temporary, compression="zstd")
 
 
 def read_table(path: Path | str, schema: pa.Schema | None = None) -> pd.DataFrame:

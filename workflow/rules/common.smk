@@ -12,11 +12,27 @@ from linepose.experiments.registry import (
     experiment_settings,
     wanted_experiments,
 )
-from linepose.pipeline import code_digest
+from linepose.pipeline import code_digest, sections
 from linepose.pipeline.file_list import lost_files
+from linepose.pipeline.parent_process import COMMAND, SNAKEMAKE, exit_with_process
+from linepose.pipeline.run_lock import hold_run_lock
 from linepose.tables import read_table
 
 FOLDERS = ("simulated", "mcmc", "figures")  # results that are folders of many files
+
+# Scripts end with the process that starts them, and that one with the `linepose run` that started it.
+os.environ[SNAKEMAKE] = str(os.getpid())
+if COMMAND in os.environ:
+    exit_with_process(COMMAND)
+
+
+onstart:
+    try:
+        hold_run_lock(Path())
+    except LineposeError as error:
+        logger.error(f"linepose: {error}")
+        raise SystemExit(1) from None
+
 
 try:
     PROJECT = load_project(config, Path(), compared_platforms)
@@ -54,10 +70,7 @@ wildcard_constraints:
 
 def settings_of(platform):
     """What a platform's file says that numbers depend on."""
-    return PROJECT.platforms[platform].model_dump(
-        mode="json",
-        exclude={"description", "experiments", "outline", "map_frame"},
-    )
+    return sections.platform_section(PROJECT, platform)
 
 
 def settings(wildcards):
@@ -118,13 +131,12 @@ def platform_file(wildcards):
 
 def sampling(wildcards):
     """How the platform's noise model is sampled, as a rule's parameter."""
-    noise_model = PROJECT.platforms[wildcards.platform].noise_model
-    return STUDY.sampling_of(noise_model).model_dump(mode="json")
+    return sections.sampling_section(PROJECT, wildcards.platform)
 
 
 def section(key):
     """What config.yaml says under this key, as a rule's parameter."""
-    return STUDY.model_dump(mode="json", include={key})[key]
+    return sections.study_section(PROJECT, key)
 
 
 def script_digest(name, *modules):

@@ -36,6 +36,7 @@ def export(
     project: ProjectFolder = HERE,
 ) -> None:
     """Write a finished platform's pose, or the points it maps, for a robot or a map."""
+    from linepose.cli.freshness import tell_outdated
     from linepose.errors import InputError
     from linepose.output.exports import EXPORTS, export_calibration, export_options
     from linepose.pipeline.calibration import Calibration
@@ -47,6 +48,7 @@ def export(
     loaded, folder = load_platform_project(name, root), root / "results" / name
     if not (folder / "pose.parquet").is_file():
         raise InputError(str(folder), "no result", "that of a run", f"linepose run {name}")
+    tell_outdated(loaded, root, name)
     target = output or folder / "exports"
     if output is None:
         target.mkdir(exist_ok=True)

@@ -1,7 +1,5 @@
 """`linepose run NAME`: the workflow for one platform, Snakemake as a subprocess."""
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -24,19 +22,31 @@ def run(
 ) -> None:
     """Calibrate a platform: outliers, pose, uncertainty, the experiments its file asks for, figures and the report.
 
-    Makes only what is missing or older than what it is made from; after an interruption, the same command goes on.
+    Makes only what is missing, or what other settings, inputs or code made; after an interruption, the same command
+    goes on.
     Results go to results/NAME, the page to read first is results/report.html.
     """
+    from linepose.cli.freshness import all_outdated
+    from linepose.cli.snakemake_process import files_of_workflow, run_snakemake
+    from linepose.experiments.registry import compared_platforms
+    from linepose.pipeline.outdated import told
     from linepose.pipeline.project_folder import find_project, load_platform_project
+    from linepose.pipeline.run_lock import check_no_run
 
     root = find_project(project)
-    load_platform_project(name, root)  # a fault of the configuration is told before anything runs
+    loaded = load_platform_project(name, root, compared_platforms)
     snakefile = find_workflow(root)
-    command = [sys.executable, "-m", "snakemake", "--snakefile", str(snakefile), "--directory", str(root)]
-    command += ["--cores", str(cores or "all"), "--quiet", "host", "rules"]
-    command += ["--config", f'platforms=["{name}"]', *(["--dry-run"] if dry_run else [])]
-    finished = subprocess.run([*command, *(further or [])], check=False)
-    if finished.returncode:
+    if not dry_run:
+        check_no_run(root)
+    arguments = ["--cores", str(cores or "all"), "--quiet", "host", "rules", "--config", f'platforms=["{name}"]']
+    outdated = all_outdated(loaded, root, name, snakefile.parent / "scripts")
+    if outdated:
+        typer.echo(f"made again: {told(outdated)}", err=True)
+        wanted = files_of_workflow(snakefile, root, arguments)
+        if forced := [result.path for result in outdated if result.path in wanted]:
+            arguments += ["--forcerun", *forced]
+    arguments += ["--dry-run"] if dry_run else []
+    if run_snakemake(snakefile, root, [*arguments, *(further or [])]):
         typer.echo(
             f"linepose: run {name} stopped: the fault stands above, and in {root / 'results' / 'logs'}", err=True
         )

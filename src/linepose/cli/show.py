@@ -9,6 +9,7 @@ def show(name: Name, project: ProjectFolder = HERE) -> None:
     """Tell a platform's pose: position, rotation vector, Euler angles, sigmas, and whether to trust it and why."""
     from rich.console import Console
 
+    from linepose.cli.freshness import tell_outdated
     from linepose.cli.result import plain_lines, tables
     from linepose.errors import InputError
     from linepose.pipeline.calibration import Calibration
@@ -22,6 +23,7 @@ def show(name: Name, project: ProjectFolder = HERE) -> None:
         raise InputError(str(folder), "no result", "that of a run", f"linepose run {name}")
     calibration = Calibration.from_results(folder, loaded.platforms[name], loaded.study.outliers.threshold_px)
     summary, removed = summarise(calibration), calibration.outliers
+    tell_outdated(loaded, root, name)
     console = Console()
     if console.is_terminal:
         for part in tables(summary, removed):

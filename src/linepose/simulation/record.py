@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
@@ -26,6 +27,7 @@ from linepose.simulation.settings import SimulationSettings
 from linepose.simulation.survey import faulty_observations, reported_covariance
 from linepose.simulation.trajectory import body_poses, schedule, time_us
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
+from linepose.tables import write_table
 
 _NAVIGATION, _LABELS, _IMAGES = 1, 2, 3  # streams of random numbers, so that one part does not move another
 _BLOCK_VALUES: Final = 4_000_000  # pixels times bands that are in memory at once
@@ -37,16 +39,20 @@ _LABEL_REACH: Final = 3.0  # in sigmas: nobody clicks beyond
 def write_survey(folder: Path, camera: Camera, settings: SimulationSettings) -> None:
     """Writes everything that the simulated platform records into `folder`, and `truth.parquet`."""
     (folder / "scans").mkdir(parents=True, exist_ok=True)
-    navigation_log(settings).to_parquet(folder / "navigation.parquet", index=False)
+    _write(navigation_log(settings), folder / "navigation.parquet")
     write_covariances(folder / "covariances.csv", settings)
     labels(camera, settings).to_csv(folder / "labels.csv", index=False, float_format="%.2f")
-    truth_table(camera, settings).to_parquet(folder / "truth.parquet", index=False)
+    _write(truth_table(camera, settings), folder / "truth.parquet")
     offsets_us = np.rint(clock_offsets_s(settings) * 1e6).astype(np.int64)
     for number in range(1, len(settings.passes) + 1):
         exposure = render(camera, settings, number)
         path = folder / "scans" / f"observation-{number:02d}"
         envi.write_scan(path, _digital_blocks(settings, exposure), sensor.wavelengths_nm(settings.image.n_bands))
         envi.write_line_times(path, time_us(settings, exposure.time_s) + offsets_us[number - 1])
+
+
+def _write(table: pd.DataFrame, path: Path) -> None:
+    write_table(table, path, pa.Schema.from_pandas(table, preserve_index=False))
 
 
 def navigation_log(settings: SimulationSettings) -> pd.DataFrame:

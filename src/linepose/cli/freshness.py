@@ -1,0 +1,38 @@
+"""Whether a platform's results are those of the present settings, inputs and code, told in one line where not."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+if TYPE_CHECKING:
+    from linepose.config.project import Project
+    from linepose.pipeline.outdated import Outdated
+
+
+def tell_outdated(project: "Project", root: Path, name: str) -> None:
+    """Tell on the error stream, in one line, that a platform's pose is outdated and why; nothing if it is not.
+
+    Results of experiments are not looked at.
+    """
+    from linepose.cli.run import find_workflow
+    from linepose.errors import InputError
+    from linepose.pipeline.outdated import Present, outdated_results, told
+
+    try:
+        scripts = find_workflow(root).parent / "scripts"
+    except InputError:
+        scripts = None
+    if outdated := outdated_results(Present(project, root, name, scripts)):
+        typer.echo(f"linepose: {told(outdated)}; to make it again: linepose run {name}", err=True)
+
+
+def all_outdated(project: "Project", root: Path, name: str, scripts: Path) -> "list[Outdated]":
+    """The outdated results of a platform, also of the experiments that its file asks for."""
+    from linepose.experiments.registry import EXPERIMENTS, SECTIONS
+    from linepose.pipeline.outdated import Present, outdated_results
+
+    platform = project.platforms[name]
+    sections = {key: section.values(platform) for key, section in SECTIONS.items()}
+    left_out = {output for one in EXPERIMENTS if not one.is_wanted(platform) for output in one.outputs}
+    return outdated_results(Present(project, root, name, scripts, sections, frozenset(left_out)))

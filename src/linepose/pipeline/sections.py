@@ -1,0 +1,50 @@
+"""Sections of the configuration by the names that rules' parameters and results have for them."""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from linepose.config.project import Project
+from linepose.pipeline.provenance import plain_settings
+
+PLATFORM: Final = "platform"
+OTHERS: Final = "others"
+_SAMPLING_OF_PLATFORM: Final = {"sampling", "own_sampling"}
+GROUPS: Final = {"sections", "study"}
+_OF_NO_EFFECT: Final = {"description", "experiments", "outline", "map_frame"}  # on what is calibrated
+
+
+def platform_section(project: Project, platform: str) -> dict[str, Any]:
+    """What a platform's file says of all that a calibration rests on."""
+    return project.platforms[platform].model_dump(mode="json", exclude=_OF_NO_EFFECT)
+
+
+def sampling_section(project: Project, platform: str) -> dict[str, Any]:
+    """How the platform's noise model is sampled."""
+    return project.study.sampling_of(project.platforms[platform].noise_model).model_dump(mode="json")
+
+
+def study_section(project: Project, name: str) -> Any:
+    """What config.yaml says under a key."""
+    return project.study.model_dump(mode="json")[name]
+
+
+def present_section(project: Project, platform: str, name: str, recorded: Any, experiments: Mapping[str, Any]) -> Any:
+    """What the configuration now has of a section that a result records; raises KeyError for an unknown name.
+
+    A group of sections has those that are recorded. `experiments` are the sections of the platform's experiments.
+    """
+    if name in GROUPS:
+        return {key: present_section(project, platform, key, value, experiments) for key, value in recorded.items()}
+    if name == PLATFORM:
+        found: Any = platform_section(project, platform)
+    elif name == OTHERS:
+        found = {other: platform_section(project, other) for other in recorded if other in project.platforms}
+    elif name in _SAMPLING_OF_PLATFORM:
+        found = sampling_section(project, platform)
+    elif name in experiments:
+        found = experiments[name]
+    elif name in type(project.study).model_fields:
+        found = study_section(project, name)
+    else:
+        found = platform_section(project, platform)[name]
+    return plain_settings({name: found})[name]
