@@ -82,6 +82,10 @@ def _file(name: str) -> _File:
         return _File(source.digest, place, ())
     points = [point for group in source.strings if group in _groups() for point in entry_points(group=group)]
     named = [*source.imports, *(text.partition(":")[0] for text in source.strings), *(point.module for point in points)]
+    stub = path.with_suffix(".pyi")
+    if path.name == "__init__.py" and path.parent != _PACKAGE and stub.is_file():  # names that are imported late
+        package = ".".join(path.parent.relative_to(_PACKAGE.parent).parts)
+        named += [f"{package}{module}" for module in _CACHE.read(stub).imports if module.startswith(".")]
     strangers = sorted(f" {point.name}={point.value}" for point in points if not _is_ours(point.module))
     leads_to = dict.fromkeys(file for module in named for file in _files(module, name))
     data = _package_data(path.parent) if path.name == "__init__.py" else ()

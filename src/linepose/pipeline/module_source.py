@@ -23,7 +23,7 @@ _NOTHING: Final = ast.Constant(None)
 
 @dataclass(frozen=True)
 class ModuleSource:
-    """Digest of what counts of a file, the modules it may import ("linepose.errors"), and names that strings hold."""
+    """Digest of what counts of a file, modules it may import ("linepose.errors", ".beside"), and names in strings."""
 
     digest: str
     imports: tuple[str, ...]
@@ -79,8 +79,9 @@ def source_of(content: bytes) -> ModuleSource:
 
 
 def _imported(node: ast.AST) -> list[str]:
-    if isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
-        return [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+    if isinstance(node, ast.ImportFrom):
+        module = "." * node.level + (node.module or "")
+        return [module, *(f"{module.rstrip('.')}.{alias.name}" for alias in node.names if node.module)]
     if isinstance(node, ast.Import):
         return [alias.name for alias in node.names]
     return []

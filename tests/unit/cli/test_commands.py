@@ -1,7 +1,9 @@
 """Each command as a user gives it: what it prints, what it writes, how it ends; faults are one line."""
 
+import fcntl
 import io
 import logging
+import os
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -195,11 +197,12 @@ def test_unknown_platform_is_one_line_that_lists_the_known(mine, command):
 def test_run_starts_snakemake_for_this_platform_only(mine, monkeypatch):
     started = []
 
-    def start(command, check):
+    def start(command, env):
         started.append(command)
-        return SimpleNamespace(returncode=0)
+        assert env["LINEPOSE_RUN_PROCESS"] == str(os.getpid())  # with which it ends
+        return SimpleNamespace(wait=lambda: 0)
 
-    monkeypatch.setattr(subprocess, "run", start)
+    monkeypatch.setattr(subprocess, "Popen", start)
     result = given("run", "mine", "--cores", "2", "--", "--rerun-triggers", "mtime")
     assert result.exit_code == 0, result.output
     (command,) = started
@@ -212,10 +215,20 @@ def test_run_starts_snakemake_for_this_platform_only(mine, monkeypatch):
 
 
 def test_run_that_fails_ends_with_one(mine, monkeypatch):
-    monkeypatch.setattr(subprocess, "run", lambda command, check: SimpleNamespace(returncode=1))
+    monkeypatch.setattr(subprocess, "Popen", lambda command, env: SimpleNamespace(wait=lambda: 1))
     result = given("run", "mine")
     assert result.exit_code == 1
     assert "results/logs" in one_line(result)
+
+
+def test_run_ends_where_another_is_at_work(mine, monkeypatch):
+    (mine / ".snakemake").mkdir()
+    with (mine / ".snakemake" / "linepose-run.lock").open("w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        monkeypatch.setattr(subprocess, "Popen", None)
+        result = given("run", "mine")
+    assert result.exit_code == 1
+    assert "another run at work here" in one_line(result)
 
 
 def test_run_without_the_workflow_says_where_it_is(mine, monkeypatch, tmp_path):

@@ -153,6 +153,14 @@ def test_every_way_to_name_a_module_counts(copied, statement):
     assert digest("linepose.made_up") != before
 
 
+def test_names_that_a_package_imports_late_count(copied):
+    package, _, digest = copied
+    before = digest("linepose.inputs.navigation")
+    with (package / "inputs" / "navigation" / "reading.py").open("a") as file:
+        file.write("FURTHER = 1\n")
+    assert digest("linepose.inputs.navigation") != before
+
+
 def test_data_beside_the_code_count(copied):
     package, _, digest = copied
     before = digest("linepose.output.report.page")
@@ -189,5 +197,5 @@ def test_library_has_no_import_that_the_digest_would_miss():
     for path in LIBRARY.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom):
-                assert not node.level, f"{path}: relative import"
+                assert not node.level, f"{path}: relative import, which is not followed"
                 assert not (node.module == "linepose" and lazy & {name.name for name in node.names}), path
