@@ -111,7 +111,9 @@ class _Comparison:
             if data is None or not data.is_file() or data.stat().st_mtime <= sums.stat().st_mtime:
                 continue
             if not row["sha256"].startswith(self.digest(data)):
-                yield f"{data.relative_to(self.present.root) if data.is_relative_to(self.present.root) else data} is not the one it was made from"
+                root = self.present.root
+                place = data.relative_to(root) if data.is_relative_to(root) else data
+                yield f"{place} is not the one it was made from"
 
     def _of_code(self, made: Provenance) -> Iterator[str]:
         if self.present.scripts is None or not made.code:
