@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 import yaml
 
+from unit import made_up
+
 ROOT = Path(os.environ.get("ROOT_TO_EXTEND", Path(__file__).parents[2]))
 PAGE = (Path(__file__).parents[2] / "docs" / "extending.md").read_text()
 COPIED = ("src", "config", "workflow", "scripts", "docs", "Snakefile", "pyproject.toml", "README.md")
@@ -157,3 +159,12 @@ def test_experiment(copy):
     assert "experiments.headings.n_sectors" in copy.reference()
     planned = copy.python("-m", "snakemake", "--dry-run", "--cores", "1", "results/mine/headings.parquet")
     assert "rule headings:" in planned
+
+
+def test_export(copy):
+    extended(copy, "export").platform()
+    made_up.write_results(copy.folder / "results" / "mine")
+    assert "4 x 4 matrix from camera to body, plain text" in copy.linepose("export", "mine", "--list")
+    copy.linepose("export", "mine", "--format", "matrix")
+    matrix = np.loadtxt(copy.folder / "results" / "mine" / "exports" / "mine.txt")
+    np.testing.assert_allclose(matrix[:3, 3], made_up.OPTIMUM[:3])
