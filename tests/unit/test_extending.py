@@ -45,6 +45,19 @@ from linepose.inputs.navigation import read_navigation
 record = read_navigation(load_platform(Path("config/platforms"), "mine").source, Path())
 print(*record.log.position_m[0], record.log.euler_rad[0, 2])
 """
+DRAW = """
+from pathlib import Path
+
+from linepose.config.platform import load_platform
+from linepose.output.figures import render
+from linepose.pipeline.calibration import Calibration
+
+render.FIGURES = [entry for entry in render.FIGURES if entry.name == "headings"]
+folder = Path("results/mine")
+mine = Calibration.from_results(folder, load_platform(Path("config/platforms"), "mine"))
+print(*render.render_figures(mine, folder / "figures")["alt"])
+print(*((folder / "figures" / f"headings.{kind}").is_file() for kind in ("png", "pdf")))
+"""
 
 
 class Copy:
@@ -159,6 +172,13 @@ def test_experiment(copy):
     assert "experiments.headings.n_sectors" in copy.reference()
     planned = copy.python("-m", "snakemake", "--dry-run", "--cores", "1", "results/mine/headings.parquet")
     assert "rule headings:" in planned
+
+
+def test_figure(copy):
+    extended(copy, "figure").platform()
+    made_up.write_results(copy.folder / "results" / "mine")
+    told = copy.python("-c", DRAW)
+    assert told.splitlines() == ["mine: histogram of the headings of the accepted observations.", "True True"]
 
 
 def test_export(copy):
