@@ -12,7 +12,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
-from scipy.stats import qmc
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
@@ -85,6 +84,8 @@ def moved_and_turned(parameters: Floats, count: int, reach_m: float, maximum_ang
 
     Moves and turns fill the balls of these radii evenly (a Sobol sequence), and are the same ones in every call.
     """
+    from scipy.stats import qmc  # slow to import
+
     cube = qmc.Sobol(6, scramble=False).random(count)  # its first element is 0: no move, no turn
     around = np.tile(parameters, (count, 1))
     around[:, :3] += reach_m * _ball(cube[:, 3:])

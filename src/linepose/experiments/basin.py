@@ -14,7 +14,6 @@ import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
 from pydantic import Field, PositiveFloat, PositiveInt
-from scipy.stats import binomtest
 
 from linepose.arrays import Floats
 from linepose.estimation.optimise import Search
@@ -187,6 +186,8 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> tu
     """Wilson's interval of a rate; (NaN, NaN) without trials."""
     if trials == 0:
         return (float("nan"), float("nan"))
+    from scipy.stats import binomtest  # slow to import
+
     interval = binomtest(successes, trials).proportion_ci(confidence, method="wilson")
     return (float(interval.low), float(interval.high))
 

@@ -14,7 +14,6 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
-from scipy.stats import chi, kstest
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
@@ -168,6 +167,8 @@ def summarise_consistency(table: pd.DataFrame) -> pd.DataFrame:
     the distances' cumulative distribution and chi's with six degrees of freedom. Splits that leave a direction of the
     pose open count as `n_open` and in nothing else. Columns as in `CONSISTENCY_SUMMARY`.
     """
+    from scipy.stats import chi, kstest  # slow to import
+
     rows = []
     for (noise_model, name), part in table.groupby(["noise_model", "comparison"], sort=False):
         distance = part["mahalanobis"].to_numpy(dtype=float)
@@ -191,6 +192,8 @@ def summarise_consistency(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _beyond(distance: Floats, content: float) -> float:
+    from scipy.stats import chi
+
     return float(np.mean(distance > chi.ppf(content, N_PARAMETERS))) if distance.size else float("nan")
 
 

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
-from scipy.stats import chi
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
@@ -80,6 +79,8 @@ def known_distances(splits: pd.DataFrame) -> Floats:
 
 def sigma_factor(splits: pd.DataFrame) -> float:
     """By how much the sigmas would have to grow for the splits' median distance to be what right sigmas give."""
+    from scipy.stats import chi  # slow to import
+
     return float(np.median(known_distances(splits)) / chi.median(N_PARAMETERS))
 
 
