@@ -8,6 +8,7 @@ good. (At the true pose itself the published model's curvature need not be posit
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.check.replay import crossing, disturbed
@@ -29,6 +30,21 @@ _SEED: Final = 2017
 _SEARCH: Final = Search(half_width_m=1.0, half_width_deg=30.0)
 
 
+class _OneByOne(Likelihood):
+    """Batches evaluated one by one: a kernel of batches takes as long to compile as the rest of a check does."""
+
+    def log_likelihoods(self, parameters: ArrayLike) -> Floats:
+        return np.array([self.log_likelihood(row) for row in np.asarray(parameters, dtype=float)])
+
+
+class _Published(_OneByOne, PublishedLikelihood):
+    pass
+
+
+class _Shared(_OneByOne, SharedLikelihood):
+    pass
+
+
 def published_covariance(
     survey: Survey, camera: Camera, pose: Floats, point_m: Floats, n_draws: int = N_DRAWS
 ) -> Floats:
@@ -41,7 +57,7 @@ def published_covariance(
     distance = crossing(camera, pose, survey.position_m, survey.euler_rad, points).distance_m
     total = np.zeros((N_PARAMETERS, N_PARAMETERS))
     for _ in range(n_draws):
-        likelihood = PublishedLikelihood(disturbed(survey, camera, distance, rng), camera)
+        likelihood = _Published(disturbed(survey, camera, distance, rng), camera)
         total += laplace_covariance(likelihood, optimise(likelihood, pose, _SEARCH).parameters)
     return total / n_draws
 
@@ -53,7 +69,7 @@ def shared_covariance(survey: Survey, camera: Camera, pose: Floats) -> Floats | 
     None where the model does not apply, because a sigma of the camera is zero.
     """
     try:
-        likelihood = SharedLikelihood(survey, camera)
+        likelihood = _Shared(survey, camera)
     except InputError:
         return None
     centre = likelihood.start(pose)
