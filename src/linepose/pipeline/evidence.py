@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 import pyarrow as pa
-from scipy.stats import chi
+from scipy.special import chdtri
 
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
@@ -84,7 +84,8 @@ def _sigma_factor(results: Results) -> float | None:
     if not results.has("splits"):
         return None
     distance = results.table("splits", _SPLITS)["mahalanobis"].dropna()
-    return float(distance.median() / chi.median(N_PARAMETERS)) if len(distance) else None
+    median = np.sqrt(chdtri(N_PARAMETERS, 0.5))  # of a chi distribution
+    return float(distance.median() / median) if len(distance) else None
 
 
 def _influence(results: Results) -> tuple[int | None, float | None]:
