@@ -6,8 +6,8 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.paper.page import render_paper_page
+    from linepose.paper.regression import REGRESSION
     from linepose.paper.report_sections import published_sections
-    from linepose.paper.row import REGRESSION
     from linepose.tables import atomic_write, read_table
 
     tables = {Path(path).stem: read_table(path) for path in snakemake.input.tables}

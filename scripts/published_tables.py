@@ -8,6 +8,7 @@ with stage(snakemake) as log:
     from linepose.config.platform import read_yaml
     from linepose.experiments.repeatability import REPEATABILITY
     from linepose.experiments.subsets import SUBSETS
+    from linepose.paper.declarations import load_declarations
     from linepose.paper.tables import PUBLISHED_NAVIGATION, PUBLISHED_POSES, markdown, published_tables
     from linepose.pipeline.stages import POSE
     from linepose.survey.navigation import NAVIGATION_SIGMA
@@ -20,6 +21,7 @@ with stage(snakemake) as log:
         read_table(snakemake.input.pose[0], POSE),
         read_table(snakemake.input.subsets[0], SUBSETS),
         read_table(snakemake.input.repeatability[0], REPEATABILITY),
+        load_declarations(Path(snakemake.input.declarations)),
     )
     folder = Path(snakemake.params.folder)
     for name, table in tables.items():

@@ -1,5 +1,6 @@
 # The published numbers beside those obtained. Included only where config/paper exists.
 from linepose.paper.declarations import load_declarations
+from linepose.paper.number_sets import NUMBER_SETS
 
 try:
     DECLARED = load_declarations(Path("config/paper/regression.yaml")).platforms
@@ -8,17 +9,7 @@ except LineposeError as error:
 
 # The set of numbers that each platform of this run is held against.
 REGRESSED = {name: DECLARED[name] for name in PLATFORMS if name in DECLARED}
-REGRESSED_ON_TRUTH = {
-    name: PROJECT.platforms[name].camera.sigmas.model_dump(include={"u_px", "v_px"})
-    for name in REGRESSED
-    if name in PROJECT.simulated
-}
 FIELD = [name for name, numbers in REGRESSED.items() if numbers == "ladybird"]
-SWEPT = [
-    name
-    for name, numbers in REGRESSED.items()
-    if numbers in ("ladybird", "shrimp_simulated")
-]
 
 if set(DECLARED) <= set(STUDY.platforms):  # a run of some platforms reproduces nothing
     PAPER_RESULTS += ["results/logs/regression.passed", "results/paper.html"]
@@ -28,23 +19,12 @@ if set(DECLARED) <= set(STUDY.platforms):  # a run of some platforms reproduces 
 rule regression:
     input:
         published="config/paper/published.yaml",
-        subsets=expand("results/{platform}/subsets.parquet", platform=FIELD),
-        pairs=expand("results/{platform}/repeatability.parquet", platform=FIELD),
-        basin=expand("results/{platform}/basin_summary.parquet", platform=SWEPT),
-        pose=expand("results/{platform}/pose.parquet", platform=REGRESSED),
-        outliers=expand("results/{platform}/outliers.parquet", platform=REGRESSED),
-        sigma=expand("results/{platform}/navigation_sigma.parquet", platform=REGRESSED),
-        truth=expand("results/{platform}/truth.parquet", platform=REGRESSED_ON_TRUTH),
-        truth_error=expand(
-            "results/{platform}/truth_error.parquet", platform=REGRESSED_ON_TRUTH
-        ),
-        accuracy=expand(
-            "results/{platform}/extraction_accuracy.parquet",
-            platform=REGRESSED_ON_TRUTH,
-        ),
-        detection=expand(
-            "results/{platform}/detection.parquet", platform=REGRESSED_ON_TRUTH
-        ),
+        declarations="config/paper/regression.yaml",
+        results=[
+            f"results/{platform}/{name}.parquet"
+            for platform, numbers in REGRESSED.items()
+            for name in NUMBER_SETS[numbers].results
+        ],
     output:
         parquet="results/regression.parquet",
         csv=report(
@@ -58,10 +38,7 @@ rule regression:
     conda:
         "../../environment.yml"
     params:
-        published_as=REGRESSED,
-        compared=FIELD,
-        swept=SWEPT,
-        on_truth=REGRESSED_ON_TRUTH,
+        platforms=REGRESSED,
         code=script_digest("regression"),
     script:
         "../../scripts/regression.py"
@@ -85,6 +62,7 @@ rule check_regression:
 rule published_tables:
     input:
         published="config/paper/published.yaml",
+        declarations="config/paper/regression.yaml",
         sigma=expand("results/{platform}/navigation_sigma.parquet", platform=FIELD[:1]),
         pose=expand("results/{platform}/pose.parquet", platform=FIELD[:1]),
         subsets=expand("results/{platform}/subsets.parquet", platform=FIELD[:1]),

@@ -56,7 +56,7 @@ def _errors_of_survey(platform: Platform, random: np.random.Generator) -> "pd.Se
 
 
 def quantile_table(errors: pd.DataFrame) -> pd.DataFrame:
-    """Quantiles of the errors, and the centre and half-width of the interval between the outer two; a row a quantity."""
+    """Quantiles of the errors, and centre and half-width of the interval between the outer two; a row a quantity."""
     table = errors.quantile(QUANTILES).T
     low, high = table[QUANTILES[0]], table[QUANTILES[-1]]
     return table.assign(expected=(low + high) / 2, tolerance=(high - low) / 2)
