@@ -43,7 +43,8 @@ def run(
     if outdated:
         typer.echo(f"made again: {told(outdated)}", err=True)
         wanted = files_of_workflow(snakefile, root, arguments)
-        if forced := [result.path for result in outdated if result.path in wanted]:
+        outputs = (place for one in outdated for place in (one.path, one.path.rpartition("/")[0]))  # or its folder
+        if forced := sorted(wanted.intersection(outputs)):
             arguments += ["--forcerun", *forced]
     arguments += ["--dry-run"] if dry_run else []
     if run_snakemake(snakefile, root, [*arguments, *(further or [])]):

@@ -9,10 +9,11 @@ import json
 import multiprocessing
 import os
 import shutil
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import pandas as pd
 import pyarrow as pa
@@ -23,6 +24,9 @@ from linepose.tables import read_table, write_table
 
 Task = Callable[[str], pd.DataFrame]
 
+FORKS: Final = sys.platform == "linux"
+"""Whether a process with libraries loaded may be forked; where not, batches are made one after another."""
+
 _task: Task | None = None
 
 
@@ -32,20 +36,15 @@ def run_batches(
     """The tables of all named batches, one below the other in the given order.
 
     `task` makes the table of the batch of a name; `folder` keeps each as NAME.parquet, written whole or not at all,
-    and what it already holds is not made again. Works in `n_processes` processes of one thread each; the caller must
+    and what it already holds is not made again. Works in `n_processes` processes of one thread each, on Linux; the caller must
     not have run compiled code on several threads before, which does not survive a fork.
     """
     waiting = [name for name in names if not _file(folder, name).is_file()]
     bar = tqdm(total=len(names), initial=len(names) - len(waiting), unit="batch", disable=not show_progress)
-    with bar, _workers(task, min(n_processes, max(len(waiting), 1))) as workers:
-        running = {workers.submit(_run, name): name for name in waiting}
-        try:
-            for finished in as_completed(running):
-                write_table(finished.result(), _file(folder, running[finished]), schema)
-                bar.update()
-        except BaseException:
-            workers.shutdown(cancel_futures=True)
-            raise
+    with bar:
+        for name, table in _made(task, waiting, n_processes):
+            write_table(table, _file(folder, name), schema)
+            bar.update()
     return pd.concat([read_table(_file(folder, name), schema) for name in names], ignore_index=True)
 
 
@@ -75,6 +74,22 @@ def _file(folder: Path, name: str) -> Path:
     return folder / f"{name}.parquet"
 
 
+def _made(task: Task, names: Sequence[str], n_processes: int) -> Iterator[tuple[str, pd.DataFrame]]:
+    """The batches of these names as they are finished, each with its name."""
+    if not FORKS:
+        _one_thread()
+        yield from ((name, task(name)) for name in names)
+        return
+    with _workers(task, min(n_processes, max(len(names), 1))) as workers:
+        running = {workers.submit(_run, name): name for name in names}
+        try:
+            for finished in as_completed(running):
+                yield running[finished], finished.result()
+        except BaseException:
+            workers.shutdown(cancel_futures=True)
+            raise
+
+
 def _workers(task: Task, count: int) -> ProcessPoolExecutor:
     """Processes that share the task by forking, since a likelihood with its scratch arrays is not worth sending."""
     return ProcessPoolExecutor(count, multiprocessing.get_context("fork"), _begin, (task, os.getpid()))
@@ -83,10 +98,14 @@ def _workers(task: Task, count: int) -> ProcessPoolExecutor:
 def _begin(task: Task, parent: int) -> None:
     global _task
     _task = task
+    _one_thread()
+    exit_with_parent(parent)
+
+
+def _one_thread() -> None:
     import numba
 
     numba.set_num_threads(1)
-    exit_with_parent(parent)
 
 
 def _run(name: str) -> pd.DataFrame:

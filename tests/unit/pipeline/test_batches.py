@@ -12,6 +12,7 @@ import pyarrow as pa
 import pytest
 
 from linepose.errors import InputError
+from linepose.pipeline import batches
 from linepose.pipeline.batches import batch_ranges, inputs_digest, remove_finished, run_batches
 
 SCHEMA = pa.schema([pa.field("batch", pa.string(), nullable=False), pa.field("value", pa.float64(), nullable=False)])
@@ -27,6 +28,13 @@ def test_all_batches_in_the_given_order(tmp_path, n_processes):
     found = run_batches(table, NAMES, tmp_path, SCHEMA, n_processes)
     assert found.equals(pd.concat([table(name) for name in NAMES], ignore_index=True))
     assert sorted(path.name for path in tmp_path.iterdir()) == [f"{name}.parquet" for name in NAMES]
+
+
+def test_same_batches_where_processes_cannot_be_forked(tmp_path, monkeypatch):
+    forked = run_batches(table, NAMES, tmp_path / "forked", SCHEMA, 2)
+    monkeypatch.setattr(batches, "FORKS", False)
+    monkeypatch.setattr(batches, "ProcessPoolExecutor", None)
+    assert run_batches(table, NAMES, tmp_path / "alone", SCHEMA, 2).equals(forked)
 
 
 def test_finished_batches_are_not_made_again(tmp_path):
