@@ -55,12 +55,24 @@ class Project:
         for name, values in platforms.items():
             (config / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(dict(values)))
 
-    def start(self, *arguments: str, cores: int = 2, snakefile: Path = ROOT / "Snakefile") -> subprocess.Popen[str]:
+    def start(self, *arguments: str, cores: int = 2) -> subprocess.Popen[str]:
         """The workflow, begun in a session of its own, so that all its processes can be killed at once."""
-        command = [sys.executable, "-m", "snakemake", "--snakefile", str(snakefile), "--cores", str(cores)]
+        command = ["-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]
+        return self._start(*command, *arguments)
+
+    def start_linepose(self, *arguments: str) -> subprocess.Popen[str]:
+        """A command of linepose, begun likewise."""
+        return self._start("-c", "from linepose.cli import main; main()", *arguments)
+
+    def linepose(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        started = self.start_linepose(*arguments)
+        output, error = started.communicate(timeout=600)
+        return subprocess.CompletedProcess(started.args, started.returncode, output, error)
+
+    def _start(self, *arguments: str) -> subprocess.Popen[str]:
         path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
         return subprocess.Popen(
-            [*command, *arguments],
+            [sys.executable, *arguments],
             cwd=self.folder,
             env=os.environ | {"PYTHONPATH": path},
             stdout=subprocess.PIPE,

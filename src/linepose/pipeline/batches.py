@@ -36,8 +36,8 @@ def run_batches(
     """The tables of all named batches, one below the other in the given order.
 
     `task` makes the table of the batch of a name; `folder` keeps each as NAME.parquet, written whole or not at all,
-    and what it already holds is not made again. Works in `n_processes` processes of one thread each, on Linux; the caller must
-    not have run compiled code on several threads before, which does not survive a fork.
+    and what it already holds is not made again. Works in `n_processes` processes of one thread each, on Linux; the
+    caller must not have run compiled code on several threads before, which does not survive a fork.
     """
     waiting = [name for name in names if not _file(folder, name).is_file()]
     bar = tqdm(total=len(names), initial=len(names) - len(waiting), unit="batch", disable=not show_progress)
