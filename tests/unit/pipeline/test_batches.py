@@ -64,7 +64,7 @@ SLOW = """
 import sys, time
 from pathlib import Path
 import pandas as pd, pyarrow as pa
-from linepose.batches import run_batches
+from linepose.pipeline.batches import run_batches
 SCHEMA = pa.schema([pa.field("value", pa.float64(), nullable=False)])
 def task(name):
     time.sleep(0.3)
