@@ -10,7 +10,6 @@ from linepose.estimation.noise_models import NOISE_MODELS
 from linepose.experiments.registry import (
     EXPERIMENTS,
     compared_platforms,
-    experiment_settings,
     wanted_experiments,
 )
 from linepose.pipeline import code_digest, sections
@@ -79,11 +78,6 @@ def settings(wildcards):
     return settings_of(wildcards.platform)
 
 
-def experiments_of(platform):
-    """What a platform's file says of its experiments, by key; None where one is left out."""
-    return experiment_settings(PROJECT.platforms[platform])
-
-
 def experiment_results(platform):
     """The results of all experiments that are run for a platform."""
     return [
@@ -148,3 +142,105 @@ def script_digest(name, *modules):
     """Digest of a script's code, and of modules that it imports by name, as the rule's parameter `code`."""
     script = workflow.source_path(f"../../scripts/{name}.py")
     return code_digest.script_digest(script, *modules)
+
+
+def experiment_inputs(experiment):
+    """The files that an experiment's entry says it needs, by name."""
+    files = {
+        need: f"results/{{platform}}/{need}.parquet"
+        for need in experiment.needs
+        if need != "samples"
+    }
+    if "samples" in experiment.needs:
+        files["samples"] = "results/{platform}/mcmc"
+    if experiment.compares:
+        for need in ("observations", "outliers"):
+            files[f"other_{need}"] = result_of_compared(experiment, need)
+    if experiment.log:
+        files["record"] = record
+    if experiment.every_noise_model:
+        files["compiled"] = expand(
+            "results/compiled/{noise_model}.txt", noise_model=NOISE_MODELS
+        )
+    elif "observations" in experiment.needs:
+        files["compiled"] = compiled
+    return files
+
+
+def result_of_compared(experiment, result):
+    """This result of the platforms that an experiment compares a platform with."""
+    return lambda wildcards: [
+        f"results/{other}/{result}.parquet"
+        for other in experiment.compared_with(PROJECT.platforms[wildcards.platform])
+    ]
+
+
+def experiment_parameters(experiment):
+    """All that an experiment's entry says it takes from the configuration, as a rule's parameters."""
+
+    def study(wildcards):
+        return {
+            key: sampling(wildcards) if key == "own_sampling" else section(key)
+            for key in experiment.study
+        }
+
+    def others(wildcards):
+        names = experiment.compared_with(PROJECT.platforms[wildcards.platform])
+        return {name: settings_of(name) for name in names}
+
+    def sections(wildcards):
+        platform = PROJECT.platforms[wildcards.platform]
+        return {one.key: one.values(platform) for one in experiment.sections}
+
+    return {
+        "platform": settings,
+        "file": platform_file,
+        "sections": sections,
+        "study": study,
+        "others": others,
+        "folder": recorded_folder,
+        "module": experiment.module,
+        "code": script_digest("experiment", experiment.module),
+        "work": f"results/{{platform}}/work/{experiment.name}",
+    }
+
+
+def covered_cells(_):
+    """Every platform, regime and noise model of the coverage study."""
+    cells = [
+        f"results/coverage/cells/{platform}/{regime}/{model}.parquet"
+        for platform in PROJECT.covered
+        for regime, section in STUDY.coverage.regimes.items()
+        for model in section.noise_models
+    ]
+    if not cells:
+        raise WorkflowError(
+            "config/config.yaml: coverage: found no regime or no simulated platform, expected at least one of each; "
+            "add them under coverage.regimes and platforms"
+        )
+    return cells
+
+
+def figure_labels(wildcards):
+    """A figure's title and its number in the paper, for Snakemake's report."""
+    index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
+    entry = index.set_index("figure").loc[wildcards.figure]
+    return {"figure": entry["title"], "paper": entry["paper_figure"] or "beyond it"}
+
+
+def drawn_from(wildcards):
+    """The results that a platform's figures are drawn from, beside those that every platform has."""
+    detected = (
+        [f"results/{wildcards.platform}/detected_points.parquet"]
+        if wildcards.platform in PROJECT.simulated
+        else []
+    )
+    return experiment_results(wildcards.platform) + detected
+
+
+def reported(_):
+    """Every result that the report's summaries and sections rest on."""
+    always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
+    return [
+        file for platform in PLATFORMS for file in experiment_results(platform)
+    ] + expand("results/{platform}/{name}.parquet", platform=PLATFORMS, name=always)

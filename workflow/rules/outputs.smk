@@ -1,23 +1,6 @@
 # What people read: figures and reports.
 
 
-def figure_labels(wildcards):
-    """A figure's title and its number in the paper, for Snakemake's report."""
-    index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
-    entry = index.set_index("figure").loc[wildcards.figure]
-    return {"figure": entry["title"], "paper": entry["paper_figure"] or "beyond it"}
-
-
-def drawn_from(wildcards):
-    """The results that a platform's figures are drawn from, beside those that every platform has."""
-    detected = (
-        [f"results/{wildcards.platform}/detected_points.parquet"]
-        if wildcards.platform in PROJECT.simulated
-        else []
-    )
-    return experiment_results(wildcards.platform) + detected
-
-
 rule figures:
     input:
         observations="results/{platform}/observations.parquet",
@@ -52,14 +35,6 @@ rule figures:
         code=script_digest("figures"),
     script:
         "../../scripts/figures.py"
-
-
-def reported(_):
-    """Every result that the report's summaries and sections rest on."""
-    always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
-    return [
-        file for platform in PLATFORMS for file in experiment_results(platform)
-    ] + expand("results/{platform}/{name}.parquet", platform=PLATFORMS, name=always)
 
 
 rule report:

@@ -50,22 +50,6 @@ wildcard_constraints:
     noise_model="[a-z]+",
 
 
-def covered_cells(_):
-    """Every platform, regime and noise model of the coverage study."""
-    cells = [
-        f"results/coverage/cells/{platform}/{regime}/{model}.parquet"
-        for platform in PROJECT.covered
-        for regime, section in STUDY.coverage.regimes.items()
-        for model in section.noise_models
-    ]
-    if not cells:
-        raise WorkflowError(
-            "config/config.yaml: coverage: found no regime or no simulated platform, expected at least one of each; "
-            "add them under coverage.regimes and platforms"
-        )
-    return cells
-
-
 rule coverage_cell:
     input:
         compiled=expand("results/compiled/{noise_model}.txt", noise_model=NOISE_MODELS),
