@@ -31,12 +31,14 @@ def split_r_hat(samples: Floats) -> Floats:
 
     Gelman et al., Bayesian Data Analysis, 3rd edition, section 11.4.
     """
-    half = samples.shape[0] // 2
-    chains = np.concatenate([samples[:half], samples[half : 2 * half]], axis=1)
-    within = chains.var(axis=0, ddof=1).mean(axis=0)
-    between = half * chains.mean(axis=0).var(axis=0, ddof=1)
-    ratio = np.divide(between / half, within, out=np.full_like(within, np.inf), where=within > 0)
-    return np.sqrt((half - 1) / half + ratio)
+    from arviz_stats.base import array_stats
+
+    even = samples[: samples.shape[0] // 2 * 2]
+    moved = even.var(axis=0).max(axis=0) > 0
+    r_hat = np.full(samples.shape[-1], np.inf)
+    if moved.any():
+        r_hat[moved] = array_stats.rhat(even[..., moved], chain_axis=1, draw_axis=0, method="split")
+    return r_hat
 
 
 def diagnose_samples(samples: Floats, section: str = "sampling") -> ChainDiagnostics:

@@ -22,7 +22,6 @@ from linepose.likelihood.base import Likelihood
 DEGREES_OF_FREEDOM: Final = 5
 FIRST_SHARE: Final = 0.25  # of the draws, from which the proposal is fitted anew
 TRUSTED_SHAPE: Final = 0.7
-_PRIOR_SHAPE, _PRIOR_COUNT = 0.5, 10.0  # a weak prior of the shape, for short tails
 
 
 @dataclass(frozen=True)
@@ -79,42 +78,20 @@ def importance_samples(
 def pareto_smoothed(log_ratios: ArrayLike) -> tuple[Floats, float]:
     """Normalised log-weights (S,) from log importance ratios (S,), and the Pareto shape k of their tail.
 
-    The tail is the largest `min(S/5, 3 sqrt S)` ratios. Raises EstimationError where no ratio is above zero.
+    The tail is the largest `min(S/5, 3 sqrt S)` ratios; where it is too short or all alike the weights stay as they
+    are and k is infinite. Raises EstimationError where no ratio is above zero.
     """
+    from arviz_stats.base import array_stats
+
     ratios = np.asarray(log_ratios, dtype=float)
     if not np.any(np.isfinite(ratios)):
         raise EstimationError("no importance weights: the density is zero at all draws; start from another optimum")
     logs = ratios - ratios.max()
-    n_tail = int(min(len(logs) / 5, 3 * np.sqrt(len(logs))))
-    order = np.argsort(logs, kind="stable")
-    tail, cut = order[len(logs) - n_tail :], logs[order[len(logs) - n_tail - 1]]
-    excess = np.exp(logs[tail]) - np.exp(cut)
-    shape = np.inf
-    if n_tail >= 5 and excess[0] > 0:
-        shape, scale = generalised_pareto(excess)
-        share = (np.arange(n_tail) + 0.5) / n_tail
-        quantiles = -scale * np.log1p(-share) if shape == 0 else scale * np.expm1(-shape * np.log1p(-share)) / shape
-        logs[tail] = np.minimum(np.log(np.exp(cut) + quantiles), 0.0)
-    return logs - logsumexp(logs), float(shape)
-
-
-def generalised_pareto(excess: Floats) -> tuple[float, float]:
-    """Shape and scale of a generalised Pareto distribution from ascending excesses (n,).
-
-    The estimate of Zhang and Stephens (2009): the likelihood in `theta = -shape / scale` averaged over a grid, with a
-    weak prior that draws the shape towards 1/2.
-    """
-    count = len(excess)
-    grid = 30 + int(np.sqrt(count))
-    quartile = excess[int(count / 4 + 0.5) - 1]
-    theta = 1 / excess[-1] + (1 - np.sqrt(grid / (np.arange(grid) + 0.5))) / (3 * quartile)
-    shapes = -np.log1p(-theta[:, None] * excess).mean(axis=1)
-    profile = count * (np.log(theta / shapes) + shapes - 1)
-    best = float(np.exp(profile - logsumexp(profile)) @ theta)
-    shape = -float(np.log1p(-best * excess).mean())
-    scale = shape / best
-    shape = -shape
-    return (count * shape + _PRIOR_COUNT * _PRIOR_SHAPE) / (count + _PRIOR_COUNT), scale
+    try:
+        smoothed, shape = array_stats.psislw(-logs)  # it takes the negative
+    except ValueError:
+        return logs - logsumexp(logs), np.inf
+    return np.asarray(smoothed), float(shape)
 
 
 def _fitted(draws: Floats, log_ratios: Floats, before: Any) -> Any:

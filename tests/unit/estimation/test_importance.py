@@ -3,7 +3,7 @@ import pytest
 from scipy.stats import genpareto, multivariate_normal
 
 from linepose.errors import EstimationError
-from linepose.estimation.importance import WeightedSamples, generalised_pareto, importance_samples, pareto_smoothed
+from linepose.estimation.importance import WeightedSamples, importance_samples, pareto_smoothed
 
 MEAN = np.array([0.1, -0.2, 0.3, 0.0, 0.5, -0.4])
 FACTOR = np.tril(np.random.default_rng(4).normal(0, 0.4, (6, 6)), -1) + np.diag([1.0, 0.1, 2.0, 0.5, 0.01, 1.0])
@@ -39,17 +39,6 @@ def test_resampled_draws_are_the_targets(function_likelihood):
     whitened = np.linalg.solve(FACTOR, (drawn - MEAN).T)
     assert drawn.shape == (1000, 6)
     assert np.all(np.abs(whitened.mean(axis=1)) < 5 * np.sqrt(1 / 1000 + 1 / samples.effective_sample_size))
-
-
-@pytest.mark.statistical
-@pytest.mark.parametrize("shape", [-0.3, 0.2, 0.5, 0.9])
-def test_pareto_shape_is_found(shape):
-    count = 4000
-    excess = np.sort(genpareto.rvs(shape, scale=3.0, size=count, random_state=5))
-    found, scale = generalised_pareto(excess)
-    # asymptotic standard error of the likelihood's estimate, (1 + k)/sqrt n; the prior moves it by 10/n at most
-    assert found == pytest.approx(shape, abs=4 * (1 + abs(shape)) / np.sqrt(count) + 10 / count)
-    assert scale == pytest.approx(3.0, rel=0.15)
 
 
 @pytest.mark.statistical
