@@ -4,17 +4,18 @@ The stages are those of the workflow, on the accepted observations only; with th
 same to the last bit.
 """
 
-from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
+from pydantic import Field, NonNegativeInt, PositiveFloat
 
+from linepose.config.study import Study
 from linepose.errors import InputError
 from linepose.estimation.diagnostics import diagnose_samples
-from linepose.estimation.noise_models import DEFAULT, likelihood_of, noise_model
+from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, likelihood_of, noise_model
 from linepose.estimation.optimise import Search
-from linepose.estimation.outliers import outlier_table, reject_outliers, stage_observations
+from linepose.estimation.outliers import OutlierSettings, outlier_table, reject_outliers, stage_observations
 from linepose.estimation.sampling import (
     IndependenceSettings,
     SamplingSettings,
@@ -35,6 +36,7 @@ from linepose.pipeline.stages import (
     sample_table,
     samples_from_table,
 )
+from linepose.settings import Settings
 from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.observations import (
     COVARIANCE_COLUMNS,
@@ -46,25 +48,35 @@ from linepose.survey.observations import (
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
 _STAGE = "inliers"
-PRIORS = ("none", "hand_measured")
 
 
-@dataclass(frozen=True)
-class CalibrationSettings:
+def _as_in(settings: type[Settings], key: str) -> Any:
+    """The key as other settings have it: its default, range and meaning stand there."""
+    return settings.model_fields[key]
+
+
+class CalibrationSettings(Settings):
     """How a calibration is made; the defaults are those of config/config.yaml.
 
-    Observations whose mean reprojection error stays above `threshold_px` are removed, the worst first, down to
-    `minimum_observations`. With `prior` "hand_measured" the hand measurement is a Gaussian prior of the pose, not only
-    the start. `sampling` is that of the noise model where it is None. Every random number follows from `seed`.
+    Examples
+    --------
+    >>> import linepose
+    >>> linepose.CalibrationSettings(threshold_px=4.0).noise_model
+    'balanced'
     """
 
-    noise_model: str = DEFAULT.name
-    prior: Literal["none", "hand_measured"] = "none"
-    threshold_px: float = 5.0
-    minimum_observations: int = 10
-    search: Search = field(default_factory=Search)
-    sampling: SamplingSettings | IndependenceSettings | None = None
-    seed: int = 2017
+    noise_model: NoiseModelName = Field(DEFAULT.name, description=f"The noise model. {MEANINGS}")
+    prior: Literal["none", "hand_measured"] = Field(
+        "none",
+        description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start.",
+    )
+    threshold_px: PositiveFloat = _as_in(OutlierSettings, "threshold_px")
+    minimum_observations: int = _as_in(OutlierSettings, "minimum_observations")
+    search: Search = Field(Search(), description="Optimisation.")
+    sampling: SamplingSettings | IndependenceSettings | None = Field(
+        None, description="Sampling; as the noise model has it where it is None."
+    )
+    seed: NonNegativeInt = _as_in(Study, "seed")
 
 
 def calibrate(
@@ -112,7 +124,7 @@ def calibrate(
     ((6,), (4, 4))
     """
     settings = settings or CalibrationSettings()
-    observations = _checked(observations, settings)
+    observations = _checked(observations)
     survey = survey_from_table(observations)
     check_determined(survey, N_PARAMETERS)
     start, hand_covariance = hand_measured.pose, hand_measured.covariance
@@ -144,11 +156,8 @@ def calibrate(
     return Calibration(results, hand_measured, camera, settings.threshold_px, settings.noise_model)
 
 
-def _checked(observations: pd.DataFrame, settings: CalibrationSettings) -> pd.DataFrame:
+def _checked(observations: pd.DataFrame) -> pd.DataFrame:
     """The observations with the columns that may be left out; raises InputError."""
-    noise_model(settings.noise_model)
-    if settings.prior not in PRIORS:
-        raise InputError("prior", repr(settings.prior), f"one of {', '.join(PRIORS)}", "choose one of these")
     missing = [name for name in _NEEDED if name not in observations.columns]
     if missing:
         raise InputError(

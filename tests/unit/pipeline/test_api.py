@@ -15,6 +15,8 @@ import linepose
 from linepose.config.new_platform import NewPlatform, write_platform
 from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
+from linepose.config.study import check_study
+from linepose.estimation.outliers import OutlierSettings
 from linepose.pipeline.stages import OPTIMA
 from linepose.survey.observations import COVARIANCE_COLUMNS, OBSERVATIONS, survey_from_table, table_from_survey
 from linepose.tables import read_table
@@ -162,10 +164,16 @@ def test_table_without_a_column_says_how_it_is_made(simulated):
         linepose.calibrate(pd.DataFrame({"observation": [1]}), simulated.intrinsics(), BY_HAND)
 
 
-def test_unknown_noise_model_lists_the_known(simulated, arrays):
-    settings = linepose.CalibrationSettings(noise_model="publisched")
-    with pytest.raises(linepose.InputError, match="expected one of published"):
-        linepose.calibrate(linepose.observations_from_arrays(**arrays), simulated.intrinsics(), BY_HAND, settings)
+def test_unknown_noise_model_lists_the_known():
+    with pytest.raises(linepose.InputError, match="noise_model: found 'publisched', expected one of published"):
+        linepose.CalibrationSettings(noise_model="publisched")
+
+
+def test_defaults_stand_once():
+    settings, outliers = linepose.CalibrationSettings(), OutlierSettings()
+    assert settings.threshold_px == outliers.threshold_px
+    assert settings.minimum_observations == outliers.minimum_observations
+    assert settings.seed == check_study({"platforms": ["a"]}).seed
 
 
 def test_hand_measurement_without_sigmas_is_refused():
