@@ -31,5 +31,6 @@ rule all:
     default_target: True
     input:
         [file for platform in PLATFORMS for file in results_of(platform)],
+        expand("results/{platform}/report.html", platform=PLATFORMS),
         "results/report.html",
         PAPER_RESULTS,

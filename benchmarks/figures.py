@@ -15,7 +15,7 @@ from linepose.config.project import load_project
 from linepose.errors import LineposeError
 from linepose.output.figures.render import render_figures
 from linepose.output.report.assemble import platform_on_page
-from linepose.output.report.page import render_page
+from linepose.output.report.page import render_platform_page
 from linepose.output.report.provenance import settings_text, versions
 from linepose.pipeline.calibration import Calibration
 
@@ -33,10 +33,10 @@ def least_seconds(function: Callable[[], object], repetitions: int) -> tuple[flo
     return min(wall for wall, _ in seconds), min(processor for _, processor in seconds)
 
 
-def report(results: list[Calibration]) -> str:
-    """The whole page."""
-    platforms = [platform_on_page(one, one.platform_file.model_dump(mode="json")) for one in results]
-    return render_page(platforms, settings_text({}), versions())
+def report(calibration: Calibration) -> str:
+    """The whole page of a platform."""
+    one = platform_on_page(calibration, calibration.platform_file.model_dump(mode="json"))
+    return render_platform_page(one, settings_text({}), versions())
 
 
 def main() -> None:
@@ -56,8 +56,8 @@ def main() -> None:
                     lambda name=name, folder=folder: render_figures(results(name), Path(folder)), 2
                 )
             print(f"{f'all figures of {name}':<34}{wall:>10.1f}{processor:>14.1f}{FIGURES_TARGET_S:>11.0f}")
-        wall, processor = least_seconds(lambda: report([results(name) for name in names]), 3)
-        print(f"{f'report of {len(names)} platforms':<34}{wall:>10.1f}{processor:>14.1f}{REPORT_TARGET_S:>11.0f}")
+        wall, processor = least_seconds(lambda: [report(results(name)) for name in names], 3)
+        print(f"{f'reports of {len(names)} platforms':<34}{wall:>10.1f}{processor:>14.1f}{REPORT_TARGET_S:>11.0f}")
     except (KeyError, LineposeError) as error:
         sys.exit(f"benchmarks/figures.py: {error}; run `make reproduce` first")
 

@@ -30,6 +30,7 @@ POINTS = np.array([[-0.2, -0.3, 0.0], [-0.2, 0.3, 0.0], [0.2, -0.3, 0.0], [0.2, 
 N_STEPS, N_WALKERS = 20, 16
 PLATFORM = {
     "description": "A made-up platform",
+    "noise_model": "published",
     "camera": {"focal_length_m": 8.2e-3, "pixel_pitch_m": 7.4e-6, "n_pixels": 648, "principal_point_px": 323.0},
     "hand_measured": {"position_m": [0.2, 0.0, -0.8], "euler_deg": [-56.0, 0.0, -90.0]},
     "source": {"kind": "labelled_views", "dataset": "made_up"},

@@ -45,7 +45,7 @@ def test_models_are_side_by_side(finished):
     summary = pd.read_parquet(results / "consistency_summary.parquet")
     assert set(summary["noise_model"]) == {"published", "shared"}
     assert (summary["n_splits"] + summary["n_open"] == 2).all()
-    assert "Which noise model?" in (finished.folder / "results" / "report.html").read_text()
+    assert "Which noise model?" in (finished.folder / "results" / "tiny" / "report.html").read_text()
 
 
 def test_every_stage_runs_under_the_balanced_model(balanced):
@@ -64,6 +64,6 @@ def test_every_stage_runs_under_the_balanced_model(balanced):
     inliers = table[table["stage"] == "inliers"]
     assert inliers["parameter"].tolist() == list(SHARED_PARAMETERS)
     assert inliers["warning"].str.contains("set independence_sampling.n_steps to").all()
-    text = (balanced / "report.html").read_text()
+    text = (balanced / "tiny" / "report.html").read_text()
     assert "noise model balanced" in text
     assert "independence_sampling.n_steps" in text

@@ -38,7 +38,7 @@ def test_commands_of_the_page_in_order(tmp_path):
     assert "linepose check myrobot" in told["new"]
     assert "`linepose run myrobot` can start" in told["check"]
     assert "Use this pose" in told["show"] or "Do not use this pose" in told["show"]
-    assert (tmp_path / "results" / "report.html").is_file()
+    assert (tmp_path / "results" / "myrobot" / "report.html").is_file()
     assert (tmp_path / "results" / "myrobot" / "exports" / "myrobot.urdf").is_file()
     assert (tmp_path / "myrobot.json").is_file()
 

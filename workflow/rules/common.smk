@@ -1,4 +1,6 @@
 import os
+from hashlib import sha256
+from importlib.resources import files
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
@@ -238,9 +240,25 @@ def drawn_from(wildcards):
     return experiment_results(wildcards.platform) + detected
 
 
-def reported(_):
-    """Every result that the report's summaries and sections rest on."""
+def reported(wildcards):
+    """Every result of a platform that its page rests on."""
     always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
-    return [
-        file for platform in PLATFORMS for file in experiment_results(platform)
-    ] + expand("results/{platform}/{name}.parquet", platform=PLATFORMS, name=always)
+    return experiment_results(wildcards.platform) + [
+        f"results/{wildcards.platform}/{name}.parquet" for name in always
+    ]
+
+
+def other_summaries(_):
+    """Digests of the summaries of platforms that other runs made: the study's page tells of them too."""
+    return {
+        name: sha256(path.read_bytes()).hexdigest()
+        for name, path in summaries_on_disk(Path("results")).items()
+        if name not in PLATFORMS
+    }
+
+
+def templates_digest():
+    """Digest of the pages' templates, which no import leads to."""
+    templates = files("linepose.output.report") / "templates"
+    texts = sorted((file.name, file.read_bytes()) for file in templates.iterdir())
+    return sha256(repr(texts).encode()).hexdigest()[:16]

@@ -40,8 +40,34 @@ rule figures:
 rule report:
     input:
         results=reported,
-        samples=expand("results/{platform}/mcmc", platform=PLATFORMS),
-        figures=expand("results/{platform}/figures", platform=PLATFORMS),
+        samples="results/{platform}/mcmc",
+        figures="results/{platform}/figures",
+    output:
+        page=report(
+            "results/{platform}/report.html",
+            caption="../report/report.rst",
+            category="{platform}",
+            labels={"result": "summary of the platform"},
+        ),
+        summary="results/{platform}/summary.json",
+    log:
+        "results/logs/{platform}/report.log",
+    conda:
+        "../../environment.yml"
+    params:
+        platform=lambda wildcards: PROJECT.platforms[wildcards.platform].model_dump(
+            mode="json"
+        ),
+        study=STUDY.model_dump(mode="json", exclude={"platforms"}),
+        templates=templates_digest(),
+        code=script_digest("report"),
+    script:
+        "../../scripts/report.py"
+
+
+rule study_report:
+    input:
+        expand("results/{platform}/summary.json", platform=PLATFORMS),
     output:
         report(
             "results/report.html",
@@ -50,15 +76,14 @@ rule report:
             labels={"result": "summary of all platforms"},
         ),
     log:
-        "results/logs/report.log",
+        "results/logs/study_report.log",
     conda:
         "../../environment.yml"
     params:
-        platforms={
-            name: PROJECT.platforms[name].model_dump(mode="json") for name in PLATFORMS
-        },
-        study=STUDY.model_dump(mode="json"),
+        others=other_summaries,
+        study=STUDY.model_dump(mode="json", exclude={"platforms"}),
         further_pages=FURTHER_PAGES,
-        code=script_digest("report"),
+        templates=templates_digest(),
+        code=script_digest("study_report"),
     script:
-        "../../scripts/report.py"
+        "../../scripts/study_report.py"

@@ -24,7 +24,7 @@ def run(
 
     Makes only what is missing, or what other settings, inputs or code made; after an interruption, the same command
     goes on.
-    Results go to results/NAME, the page to read first is results/report.html.
+    Results go to results/NAME, the page to read first is results/NAME/report.html.
     """
     from linepose.cli.freshness import all_outdated
     from linepose.cli.snakemake_process import files_of_workflow, run_snakemake
@@ -53,7 +53,7 @@ def run(
         )
         raise typer.Exit(1)
     if not dry_run:
-        typer.echo(f"done: linepose show {name}; the report is {root / 'results' / 'report.html'}")
+        typer.echo(f"done: linepose show {name}; the report is {root / 'results' / name / 'report.html'}")
 
 
 def find_workflow(root: Path) -> Path:

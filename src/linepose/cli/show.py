@@ -31,5 +31,5 @@ def show(name: Name, project: ProjectFolder = HERE) -> None:
     else:
         for line in plain_lines(summary, removed):
             typer.echo(line)
-    typer.echo(f"tables {folder}/*.parquet, figures {folder / 'figures'}, report {root / 'results' / 'report.html'}")
+    typer.echo(f"tables {folder}/*.parquet, figures {folder / 'figures'}, report {folder / 'report.html'}")
     typer.echo(f"take it away: linepose export {name} --format urdf")

@@ -9,7 +9,7 @@ from math import isnan
 from typing import Final
 
 from linepose.estimation.diagnostics import MAXIMUM_R_HAT, MINIMUM_STEPS_PER_TIME
-from linepose.estimation.noise_models import PUBLISHED, noise_model
+from linepose.estimation.noise_models import DEFAULT, PUBLISHED, noise_model
 
 CONSISTENT: Final = (0.5, 1.5)  # reduced chi-square of errors that are about as large as their sigmas
 MAX_INTRACLASS_CORRELATION: Final = (
@@ -193,8 +193,8 @@ def independence(evidence: Evidence) -> Check:
         "Independence within a view",
         Level.CARE,
         f"{found} The published noise model takes points as independent, so its sigmas come out too small.",
-        "Set noise_model: shared in the platform's file, which allows for it; more observations help, more points in a "
-        "view do not.",
+        f"Set noise_model: {DEFAULT.name} in the platform's file, which allows for it; more observations help, more "
+        "points in a view do not.",
         f"{share:.0f} % of the errors' variance is common to a whole view",
     )
 

@@ -57,7 +57,7 @@ def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.Dat
             f"{factor[PUBLISHED.name]:.2f} times as far apart as the published model's sigmas promise, and "
             f"{factor[SHARED.name]:.2f} times under the shared model."
         )
-        sentences.append(_recommendation(factor[PUBLISHED.name], factor[SHARED.name]))
+        sentences.append(_sigmas_of_shared(factor[PUBLISHED.name], factor[SHARED.name]))
     moved = (shared[list(POSE_COLUMNS)] - published[list(POSE_COLUMNS)]).to_numpy(dtype=float)
     in_sigmas = np.abs(moved / shared[list(SIGMA_COLUMNS)].to_numpy(dtype=float))
     most = int(np.argmax(in_sigmas))
@@ -69,7 +69,7 @@ def paragraph(estimates: pd.DataFrame, summary: pd.DataFrame, identified: pd.Dat
         sentences.append(_truth_sentence(estimates))
     balanced = _estimate(estimates, BALANCED.name, INLIERS)
     sentences.append(
-        "The balanced model, in which distance alone explains no error better, lies "
+        "Use the balanced model, in which distance alone explains no error better. It lies "
         f"{balanced['mahalanobis']:.1f} sigmas from the shared one: {_balanced_advice(float(balanced['mahalanobis']))}"
     )
     robust = _estimate(estimates, ROBUST.name, ALL)
@@ -94,8 +94,8 @@ def _estimate(estimates: pd.DataFrame, noise_model: str, name: str) -> pd.Series
 
 def _balanced_advice(distance: float) -> str:
     if distance < chi.ppf(_CLOSE, N_PARAMETERS):
-        return "either will do."
-    return "take the balanced one, the shared model rewards distance where errors differ from line to line."
+        return "they say the same."
+    return "the shared model rewards distance where errors differ from line to line."
 
 
 def _robust_advice(distance: float) -> str:
@@ -110,13 +110,14 @@ def _halves_factor(summary: pd.DataFrame, model: str) -> float:
     return float(rows["sigma_factor"].iloc[0]) if len(rows) else float("nan")
 
 
-def _recommendation(published: float, shared: float) -> str:
+def _sigmas_of_shared(published: float, shared: float) -> str:
+    """How far the shared model's sigmas hold, after these factors on the sigmas of either."""
     low, high = _WELL_MATCHED
     if low <= shared <= high:
-        return "Use the shared model: its sigmas hold as they stand."
+        return "The shared model's sigmas hold as they stand."
     if abs(np.log(shared)) < abs(np.log(published)):
         word = "small" if shared > 1 else "large"
-        return f"Use the shared model, whose sigmas are nearer to the truth, though too {word} by the factor above."
+        return f"The shared model's sigmas are the nearer to the truth, though too {word} by the factor above."
     word = "too small" if shared > 1 else "larger than these halves need"
     return (
         f"On these observations the shared model's sigmas are {word} by the factor above, further off than the "

@@ -1,4 +1,4 @@
-"""The report as one HTML file that needs no network: a page of Jinja2 templates filled from the results."""
+"""The reports as HTML files that need no network: Jinja2 templates filled from the results."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -57,17 +57,25 @@ def figures_on_page(name: str, folder: Path, index: pd.DataFrame) -> list[Figure
     ]
 
 
-def render_page(
-    platforms: Sequence[PlatformOnPage],
+def render_platform_page(platform: PlatformOnPage, settings: str, package_versions: Mapping[str, str]) -> str:
+    """The page of one platform; `settings` is what config.yaml says."""
+    template = page_environment().get_template("platform.html.j2")
+    return template.render(one=platform, settings=settings, versions=package_versions)
+
+
+def render_study_page(
+    summaries: Sequence[PlatformSummary],
     settings: str,
     package_versions: Mapping[str, str],
     further_pages: Mapping[str, str] | None = None,
 ) -> str:
-    """The whole page; `further_pages` has the title and the address of pages that it links to."""
-    return (
-        page_environment()
-        .get_template("report.html.j2")
-        .render(platforms=platforms, settings=settings, versions=package_versions, further_pages=further_pages or {})
+    """The page over all platforms, which links to theirs at NAME/report.html.
+
+    `further_pages` has the title and the address of other pages that it links to.
+    """
+    template = page_environment().get_template("study.html.j2")
+    return template.render(
+        summaries=summaries, settings=settings, versions=package_versions, further_pages=further_pages or {}
     )
 
 

@@ -3,7 +3,7 @@ import pytest
 from linepose.output.figures.entry import FIGURES
 from linepose.output.figures.render import render_figures
 from linepose.output.report.assemble import platform_on_page
-from linepose.output.report.page import render_page
+from linepose.output.report.page import render_platform_page
 from linepose.output.report.provenance import settings_text, versions
 from linepose.pipeline.calibration import Calibration
 from linepose.tables import write_table
@@ -24,4 +24,4 @@ def page(results):
     write_table(render_figures(results, folder), folder / "index.parquet", FIGURES)
     one = platform_on_page(results, results.platform.model_dump(mode="json"))
     study = settings_text({"data_folders": ["data", "/home/someone/private/data"], "seed": 1})
-    return render_page([one], study, versions(), {"Another page": "another.html"})
+    return render_platform_page(one, study, versions())

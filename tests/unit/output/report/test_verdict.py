@@ -54,7 +54,7 @@ def test_everything_in_order_says_use_it_and_asks_for_nothing():
             {"intraclass_correlation": 0.31, "sigma_factor": None},
             "Independence within a view",
             Level.CARE,
-            "noise_model: shared",
+            "noise_model: balanced",
         ),
         ({"tilt_spread_deg": 1.4}, "Angular diversity", Level.CARE, "rolled or pitched"),
         ({"undecided": ("r_z down",)}, "Angular diversity", Level.CARE, "rolled or pitched"),

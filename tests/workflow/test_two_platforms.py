@@ -1,0 +1,46 @@
+"""Two platforms of one project, run one after the other: the first's results and page stay as they were."""
+
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from tiny_project import STUDY, TINY, Project
+
+QUICK = TINY | {"experiments": dict.fromkeys(["basin", "mapping", "repeatability", "sensitivity"], None)}
+
+
+def linepose(folder: Path, *arguments: str) -> str:
+    """What a command prints; it must end well."""
+    command = [Path(sys.executable).with_name("linepose"), *arguments]
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    environment = os.environ | {"PATH": path}
+    ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Of every file of a platform's results, by its path."""
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(files)}
+
+
+@pytest.mark.workflow
+def test_each_platform_keeps_its_page_and_its_numbers(tmp_path):
+    project = Project(tmp_path)
+    names = ("first", "second")
+    project.configure(STUDY | {"platforms": list(names)}, dict.fromkeys(names, QUICK))
+    results = tmp_path / "results"
+    linepose(tmp_path, "run", "first", "--cores", "2")
+    before, shown = digests(results / "first"), linepose(tmp_path, "show", "first")
+    linepose(tmp_path, "run", "second", "--cores", "2")
+    assert digests(results / "first") == before
+    assert linepose(tmp_path, "show", "first") == shown
+    assert str(results / "first" / "report.html") in shown
+    assert "Camera calibration of first" in (results / "first" / "report.html").read_text()
+    assert "second" not in (results / "first" / "report.html").read_text()
+    study = (results / "report.html").read_text()
+    assert all(f'href="{name}/report.html"' in study for name in names)
