@@ -1,6 +1,7 @@
 """Figure 15: from how far away the search still finds the optimum."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 import pandas as pd
@@ -8,8 +9,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from linepose.experiments.basin import Region
+from linepose.experiments.basin import BASIN, BASIN_SUMMARY, Region
+from linepose.experiments.basin import SECTION as BASIN_SECTION
+from linepose.output.figures.entry import FigureEntry, without
 from linepose.output.figures.style import BLACK, BLUE, HALF_PAGE_IN, blank_figure, few_ticks, styled
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.table_checks import usable_rows
 
 _FAILED = "#E8D9C5"
@@ -75,3 +79,32 @@ def basin_caption(summary: pd.DataFrame, region: Region) -> str:
         f"Successes inside and outside the claimed triangle below {region.distance_m:g} m and "
         f"{np.degrees(region.angle_rad):.0f}°, with 95 % intervals: {'; '.join(parts)}."
     )
+
+
+def _basin(r: Calibration) -> Figure:
+    settings = BASIN_SECTION.of(r.platform_file)
+    assert settings is not None  # left_out says so before
+    return basin(r.results.table("basin", BASIN), settings.region())
+
+
+def _basin_caption(r: Calibration) -> str:
+    settings = BASIN_SECTION.of(r.platform_file)
+    assert settings is not None
+    return basin_caption(r.results.table("basin_summary", BASIN_SUMMARY), settings.region())
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "basin",
+        "Basin of attraction",
+        "Figure 15",
+        "grid of starts over distance and angle, coloured by whether the search found the optimum",
+        (
+            "basin",
+            "basin_summary",
+        ),
+        _basin,
+        _basin_caption,
+        without("basin"),
+    ),
+)

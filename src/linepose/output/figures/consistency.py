@@ -10,7 +10,9 @@ from scipy.stats import chi
 
 from linepose.errors import InputError
 from linepose.estimation.noise_models import noise_model
+from linepose.experiments.consistency import CONSISTENCY, CONSISTENCY_SUMMARY
 from linepose.geometry.pose import N_PARAMETERS
+from linepose.output.figures.entry import FigureEntry, without
 from linepose.output.figures.style import BLACK, GREY, WIDE_IN, blank_figure, styled
 from linepose.pipeline.table_checks import usable_rows
 
@@ -74,3 +76,20 @@ def _known(table: pd.DataFrame) -> pd.DataFrame:
     if known.empty:
         raise InputError("consistency.parquet", "no distance", "poses with sigmas", "use more observations")
     return known
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "consistency",
+        "Agreement of disjoint observations",
+        "",
+        "cumulative distribution of the distance in sigmas between poses from disjoint observations, by noise model",
+        (
+            "consistency",
+            "consistency_summary",
+        ),
+        lambda r: consistency(r.results.table("consistency", CONSISTENCY)),
+        lambda r: consistency_caption(r.results.table("consistency_summary", CONSISTENCY_SUMMARY)),
+        without("noise_models"),
+    ),
+)

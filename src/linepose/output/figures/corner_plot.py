@@ -1,6 +1,7 @@
 """Figure 10: the sampled posterior of every pair of pose parameters."""
 
 from collections.abc import Mapping
+from typing import Final
 
 import corner
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import POSE_MARKS, WIDE_IN, pose_handles, styled
 from linepose.pipeline.table_checks import usable_chain
 
@@ -109,3 +111,19 @@ def corner_plot_caption(samples: pd.DataFrame) -> str:
         f"The most correlated pair is {first} and {second} ({correlation[i, j]:+.2f}): the observations tell their "
         "combination better than either alone."
     )
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "corner",
+        "Posterior of the pose",
+        "Figure 10",
+        "histograms and contours of every pair of pose parameters with the optimum and the hand measurement marked",
+        (
+            "mcmc/inliers",
+            "pose",
+        ),
+        lambda r: corner_plot(r.samples, r.marked_poses()),
+        lambda r: corner_plot_caption(r.samples),
+    ),
+)

@@ -1,4 +1,4 @@
-"""What the catalogue says of each figure."""
+"""What a figure is: one entry, beside the function that draws it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,16 +16,18 @@ FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "
 
 
 @dataclass(frozen=True)
-class CatalogueEntry:
+class FigureEntry:
     """One figure: file stem, title, the paper's figure or nothing, what it shows, and how it is made.
 
-    `left_out` says in a sentence why a platform has none of it, and is empty where it should have one.
+    `needs` names the results that it is drawn from, as far as the platform has them. `left_out` says in a sentence why a
+    platform has none of it, and is empty where it should have one.
     """
 
     name: str
     title: str
     paper_figure: str
     shows: str
+    needs: tuple[str, ...]
     draw: Callable[[Calibration], Figure]
     caption: Callable[[Calibration], str]
     left_out: Callable[[Platform], str] = lambda _: ""

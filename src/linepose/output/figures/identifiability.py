@@ -9,7 +9,9 @@ from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 
 from linepose.estimation.identifiability import WORDS
 from linepose.estimation.noise_models import SHARED
+from linepose.experiments.noise_models import IDENTIFIABILITY, NOISE_MODELS
 from linepose.likelihood.shared import SharedPriors
+from linepose.output.figures.entry import FigureEntry, without
 from linepose.output.figures.style import BLUE, GREY, RED, SKY, WIDE_IN, blank_figure, styled
 from linepose.pipeline.table_checks import usable_rows
 
@@ -71,3 +73,24 @@ def shared_inliers(estimates: pd.DataFrame) -> pd.Series:
     """The shared model's row of the accepted observations."""
     rows = estimates[(estimates["noise_model"] == SHARED.name) & (estimates["set"] == "inliers")]
     return usable_rows(rows, list(_LEVELS), f"noise_models.parquet, {SHARED.name}, inliers").iloc[0]
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "identifiability",
+        "What the data say of each parameter",
+        "",
+        "bars of posterior over prior sigma of each parameter, and intervals of the inferred levels on their priors",
+        (
+            "identifiability",
+            "noise_models",
+        ),
+        lambda r: identifiability(
+            r.results.table("identifiability", IDENTIFIABILITY), r.results.table("noise_models", NOISE_MODELS)
+        ),
+        lambda r: identifiability_caption(
+            r.results.table("identifiability", IDENTIFIABILITY), r.results.table("noise_models", NOISE_MODELS)
+        ),
+        without("noise_models"),
+    ),
+)

@@ -1,5 +1,7 @@
 """Figures 13 and 14: the observed points projected onto the pattern's plane under one pose and another."""
 
+from typing import Final
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -8,12 +10,16 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse
 
 from linepose.arrays import Floats
-from linepose.experiments.mapping import PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
+from linepose.experiments.mapping import MAPPING, MAPPING_SUMMARY, PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
+from linepose.experiments.mapping import SECTION as MAPPING_SECTION
 from linepose.geometry.plane import fit_plane
+from linepose.output.figures.entry import FigureEntry, without
 from linepose.output.figures.plane_view import PlaneView, plane_view
 from linepose.output.figures.style import BLACK, GREEN, GREY, HALF_PAGE_IN, RED, blank_figure, few_ticks, styled
+from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS
 from linepose.pipeline.table_checks import usable_rows
-from linepose.survey.observations import POSITION_COLUMNS
+from linepose.survey.observations import OBSERVATIONS, POSITION_COLUMNS
 
 _UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))
 _PANEL_ASPECT = 0.75
@@ -174,3 +180,57 @@ def _finish(axes: Axes, view: PlaneView, shown: Floats) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel=view.labels[0], ylabel=view.labels[1])
     few_ticks(axes)
+
+
+def _angle_deg(r: Calibration) -> float:
+    settings = MAPPING_SECTION.of(r.platform_file)
+    return settings.perturbation_deg if settings else 0.0
+
+
+def _angle_error(r: Calibration) -> Figure:
+    points = r.results.table("estimated_points", ESTIMATED_POINTS)
+    mapped = r.results.table("mapping", MAPPING)
+    observations = r.results.table("observations", OBSERVATIONS)
+    return angle_error(mapped, points, observations, _angle_deg(r), r.true_points_m)
+
+
+def _mapping(r: Calibration) -> Figure:
+    points = r.results.table("estimated_points", ESTIMATED_POINTS)
+    mapped = r.results.table("mapping", MAPPING)
+    observations = r.results.table("observations", OBSERVATIONS)
+    return mapping(mapped, points, observations, r.inliers[0], r.true_points_m)
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "mapping",
+        "Mapping before and after",
+        "Figure 13",
+        "the pattern's points projected to its plane before and after the calibration",
+        (
+            "mapping_summary",
+            "outliers",
+            "estimated_points",
+            "mapping",
+            "observations",
+        ),
+        _mapping,
+        lambda r: mapping_caption(r.results.table("mapping_summary", MAPPING_SUMMARY), r.inliers[0]),
+        without("mapping"),
+    ),
+    FigureEntry(
+        "angle_error",
+        "Effect of an angle error",
+        "Figure 14",
+        "the pattern's points projected with the calibrated pose and with one turned by a small angle",
+        (
+            "mapping_summary",
+            "estimated_points",
+            "mapping",
+            "observations",
+        ),
+        _angle_error,
+        lambda r: angle_error_caption(r.results.table("mapping_summary", MAPPING_SUMMARY), _angle_deg(r)),
+        without("mapping"),
+    ),
+)

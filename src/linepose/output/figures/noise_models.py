@@ -8,7 +8,9 @@ from matplotlib.figure import Figure
 
 from linepose.arrays import Floats
 from linepose.estimation.noise_models import noise_model
+from linepose.experiments.noise_models import NOISE_MODELS
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.output.figures.entry import FigureEntry, without
 from linepose.output.figures.style import GREY, WIDE_IN, blank_figure, styled
 from linepose.pipeline.table_checks import usable_rows
 
@@ -67,3 +69,20 @@ def noise_models_caption(table: pd.DataFrame) -> str:
         f"sideways position r_y differs by {', '.join(told)}. Estimates that move by more than their bars when "
         "observations are exchanged have sigmas that are too small."
     )
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "noise_models",
+        "Noise models side by side",
+        "",
+        "each pose parameter from every set of observations under each noise model, with bars of two sigmas",
+        (
+            "noise_models",
+            "pose",
+        ),
+        lambda r: noise_models(r.results.table("noise_models", NOISE_MODELS), r.pose_of("hand_measured"), r.true_pose),
+        lambda r: noise_models_caption(r.results.table("noise_models", NOISE_MODELS)),
+        without("noise_models"),
+    ),
+)

@@ -1,5 +1,7 @@
 """Figure 8: the mean error of every observation at each stage of the outlier removal."""
 
+from typing import Final
+
 import numpy as np
 import pandas as pd
 from matplotlib.colors import LogNorm
@@ -7,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
-from linepose.estimation.outliers import removal_order
+from linepose.estimation.outliers import OUTLIERS, removal_order
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import RED, WIDE_IN, blank_figure, styled
 from linepose.pipeline.table_checks import accepted_rows, usable_rows
 
@@ -77,3 +80,16 @@ def outlier_matrix_caption(outliers: pd.DataFrame, threshold_px: float) -> str:
         f"The framed row is the first in which every error is below {threshold_px:g} px: {len(accepted)} of "
         f"{len(first)} observations remain, the worst at {accepted['error_px'].max():.1f} px."
     )
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "outliers",
+        "Outlier removal",
+        "Figure 8",
+        "matrix of mean errors, observations across, stages of the removal down, the accepted row framed",
+        ("outliers",),
+        lambda r: outlier_matrix(r.results.table("outliers", OUTLIERS)),
+        lambda r: outlier_matrix_caption(r.results.table("outliers", OUTLIERS), r.threshold_px),
+    ),
+)

@@ -15,7 +15,9 @@ from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.config.outline import OutlineSection, OutlineViewSection
+from linepose.config.platform import Platform
 from linepose.geometry.rotations import matrix_from_rotation_vector
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import (
     BLACK,
     BLUE,
@@ -28,6 +30,7 @@ from linepose.output.figures.style import (
     styled,
 )
 from linepose.output.figures.thinning import some_rows
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.table_checks import usable_chain
 
 _SHOWN_AXES: Final = 200
@@ -114,3 +117,29 @@ def platform_sketch_caption(samples: pd.DataFrame) -> str:
         f"{sigma_mm[0]:.0f} mm forward, {sigma_mm[1]:.0f} mm to the right and {sigma_mm[2]:.0f} mm down. The outline "
         "is a sketch for orientation, not to the millimetre."
     )
+
+
+def _sketch(r: Calibration) -> Figure:
+    assert r.platform_file.outline is not None
+    return platform_sketch(r.samples, r.platform_file.outline, r.marked_poses())
+
+
+def _without_outline(platform: Platform) -> str:
+    return "" if platform.outline else "The platform's file has no outline to draw on: add one under `outline`."
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "platform_sketch",
+        "Poses on the platform",
+        "Figure 12",
+        "sampled camera positions and optical axes over a sketch of the platform from the side and the front",
+        (
+            "mcmc/inliers",
+            "pose",
+        ),
+        _sketch,
+        lambda r: platform_sketch_caption(r.samples),
+        _without_outline,
+    ),
+)

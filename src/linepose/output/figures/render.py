@@ -5,21 +5,21 @@ from pathlib import Path
 import pandas as pd
 
 from linepose.errors import LineposeError
-from linepose.output.figures.catalogue import FIGURES
-from linepose.output.figures.entry import CatalogueEntry
+from linepose.output.figures.entry import FigureEntry
+from linepose.output.figures.registry import FIGURES
 from linepose.output.figures.style import save
 from linepose.pipeline.calibration import Calibration
 
 
 def render_figures(calibration: Calibration, folder: Path) -> pd.DataFrame:
-    """Draw every figure of the catalogue into a folder, PNG and PDF; one row a figure, drawn or left out.
+    """Draw every figure of the registry into a folder, PNG and PDF; one row a figure, drawn or left out.
 
     Columns as in `FIGURES`: where `left_out` has a sentence there is no file.
     """
     return pd.DataFrame([_render(entry, calibration, folder) for entry in FIGURES])
 
 
-def _render(entry: CatalogueEntry, calibration: Calibration, folder: Path) -> dict[str, str]:
+def _render(entry: FigureEntry, calibration: Calibration, folder: Path) -> dict[str, str]:
     caption, left_out = "", entry.left_out(calibration.platform_file)
     if not left_out:
         try:

@@ -1,15 +1,22 @@
 """Whether disjoint halves of the observations agree: the distribution of their distance over random splits."""
 
+from typing import Final
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from scipy.stats import chi
 
 from linepose.arrays import Floats
+from linepose.config.platform import Platform
 from linepose.errors import InputError
-from linepose.experiments.splits import known_distances, sigma_factor
+from linepose.experiments.repeatability import REPEATABILITY
+from linepose.experiments.repeatability import SECTION as REPEATABILITY_SECTION
+from linepose.experiments.splits import SPLITS, known_distances, sigma_factor
 from linepose.geometry.pose import N_PARAMETERS
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, GREY, HALF_PAGE_IN, RED, blank_figure, styled
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.table_checks import usable_rows
 
 
@@ -70,3 +77,30 @@ def _distances(splits: pd.DataFrame) -> Floats:
     if "mahalanobis" not in splits:
         raise InputError("splits.parquet", "no column mahalanobis", "the distance of each split", "run its stage again")
     return known_distances(splits)
+
+
+def _named_pair(r: Calibration) -> pd.DataFrame | None:
+    return r.results.table("repeatability", REPEATABILITY) if r.results.has("repeatability") else None
+
+
+def _without_splits(platform: Platform) -> str:
+    settings = REPEATABILITY_SECTION.of(platform)
+    told = "This experiment was not asked for: experiments.repeatability has no splits in the platform's file."
+    return "" if settings and settings.n_splits else told
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "repeatability",
+        "Repeatability",
+        "",
+        "histogram of the distance between poses from disjoint halves of the observations",
+        (
+            "splits",
+            "repeatability",
+        ),
+        lambda r: repeatability(r.results.table("splits", SPLITS), _named_pair(r)),
+        lambda r: repeatability_caption(r.results.table("splits", SPLITS), _named_pair(r)),
+        _without_splits,
+    ),
+)

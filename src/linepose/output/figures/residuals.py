@@ -1,13 +1,18 @@
 """What is left over at the optimum, by observation and by point."""
 
+from collections.abc import Callable
+from typing import Final
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, GREY, SKY, WIDE_IN, blank_figure, styled
-from linepose.pipeline.residual_tables import intraclass_correlation
+from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.residual_tables import RESIDUALS, intraclass_correlation
 from linepose.pipeline.table_checks import stage_rows, usable_rows
 
 _COLUMNS = ("stage", "observation", "point", "error_px", "error_u_px", "error_v_px", "sigma_px")
@@ -75,3 +80,33 @@ def residuals_caption(table: pd.DataFrame, by: str) -> str:
 
 def _inliers(table: pd.DataFrame) -> pd.DataFrame:
     return stage_rows(usable_rows(table, _COLUMNS, "residuals.parquet"), "inliers", _COLUMNS, "residuals.parquet")
+
+
+def _residuals(by: str) -> Callable[[Calibration], Figure]:
+    return lambda r: residuals(r.results.table("residuals", RESIDUALS), by)
+
+
+def _residuals_caption(by: str) -> Callable[[Calibration], str]:
+    return lambda r: residuals_caption(r.results.table("residuals", RESIDUALS), by)
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "residuals_by_observation",
+        "Residuals by observation",
+        "",
+        "errors along and across the scan line by observation, with their sigmas",
+        ("residuals",),
+        _residuals("observation"),
+        _residuals_caption("observation"),
+    ),
+    FigureEntry(
+        "residuals_by_point",
+        "Residuals by point",
+        "",
+        "errors along and across the scan line by point of the pattern, with their sigmas",
+        ("residuals",),
+        _residuals("point"),
+        _residuals_caption("point"),
+    ),
+)

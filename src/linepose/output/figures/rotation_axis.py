@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.stats import gaussian_kde
 
 from linepose.arrays import Floats
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import (
     BLACK,
     GREY,
@@ -139,3 +140,19 @@ def rotation_axis_caption(samples: pd.DataFrame, hand_measured: ArrayLike) -> st
         f"{angle_deg.mean():.2f}° ± {angle_deg.std():.2f}°. The axes scatter by {scatter:.2f}° (RMS). The hand-measured"
         f" rotation, red, has its axis {off:.1f}° off and an angle of {float(hand_deg):.1f}°."
     )
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "rotation_axis",
+        "Rotation axis and angle",
+        "Figure 11",
+        "sampled rotation axes on a sphere and close up, and a histogram of the angle",
+        (
+            "mcmc/inliers",
+            "pose",
+        ),
+        lambda r: rotation_axis(r.samples, r.marked_poses()),
+        lambda r: rotation_axis_caption(r.samples, r.pose_of("hand_measured")),
+    ),
+)

@@ -9,9 +9,11 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from linepose.arrays import Floats
+from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.inputs.scans.scan_files import Intensity
-from linepose.output.figures.scan_example import ScanExample
+from linepose.output.figures.entry import FigureEntry
+from linepose.output.figures.scan_example import ScanExample, scan_examples
 from linepose.output.figures.style import RED, WIDE_IN, blank_figure, few_ticks, styled
 
 _CONTRAST: Final = (0.005, 0.995)  # quantiles shown as black and white
@@ -106,3 +108,48 @@ def _show(axes: Axes, intensity: Intensity, lines: tuple[int, int], pixels: tupl
     axes.imshow(part, cmap="gray", vmin=dark, vmax=bright, aspect="auto", extent=extent, interpolation="antialiased")
     axes.grid(visible=False)
     few_ticks(axes)
+
+
+def _without_scans(platform: Platform) -> str:
+    kind = platform.source.kind
+    told = "This platform has no scans: its points were labelled before they came here."
+    return told if kind == "labelled_views" else ""
+
+
+def _without_truth(platform: Platform) -> str:
+    told = "Detection is tried beside the labels only where the truth is known: in simulated platforms."
+    return "" if platform.simulation else told
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "stacked_scan",
+        "Stacked scan",
+        "Figure 6",
+        "grey images of a few observations' scan lines with the pattern's sheet framed",
+        ("points",),
+        lambda r: stacked_scan(scan_examples(r, "points")),
+        lambda r: stacked_scan_caption(scan_examples(r, "points")),
+        _without_scans,
+    ),
+    FigureEntry(
+        "labelled_points",
+        "Points found in the scan",
+        "Figure 7",
+        "close-ups of the pattern in scans, each point crossed and numbered",
+        ("points",),
+        lambda r: points_in_scan(scan_examples(r, "points")),
+        lambda r: labelled_points_caption(scan_examples(r, "points")),
+        _without_scans,
+    ),
+    FigureEntry(
+        "detected_points",
+        "Points detected without labels",
+        "",
+        "close-ups of the pattern in scans, each detected point crossed and numbered",
+        ("detected_points",),
+        lambda r: points_in_scan(scan_examples(r, "detected_points")),
+        lambda r: detected_points_caption(scan_examples(r, "detected_points")),
+        _without_truth,
+    ),
+)

@@ -1,5 +1,7 @@
 """Figure 5: the survey from above."""
 
+from typing import Final
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -8,7 +10,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
 from linepose.arrays import Floats
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, GREEN, GREY, HALF_PAGE_IN, blank_figure, few_ticks, styled
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS
 from linepose.pipeline.table_checks import usable_rows
 from linepose.survey.body_angles import body_angles_rad
 from linepose.survey.observations import POSITION_COLUMNS, Survey
@@ -118,3 +122,20 @@ def survey_plan_caption(survey: Survey, accepted: list[int]) -> str:
         f"each points where the vehicle heads. The accepted ones are tilted by {tilt_deg.min():.1f}° to "
         f"{tilt_deg.max():.1f}° (norm of roll and pitch)."
     )
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "survey_plan",
+        "Survey from above",
+        "Figure 5",
+        "map of the observations around the pattern, numbered and coloured by tilt",
+        (
+            "estimated_points",
+            "observations",
+            "outliers",
+        ),
+        lambda r: survey_plan(r.survey(), r.inliers, r.results.table("estimated_points", ESTIMATED_POINTS)),
+        lambda r: survey_plan_caption(r.survey(), r.inliers),
+    ),
+)

@@ -15,6 +15,7 @@ from linepose.arrays import Floats
 from linepose.estimation.diagnostics import MINIMUM_STEPS_PER_TIME
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.output.figures.corner_plot import LABELS
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import (
     BLACK,
     BLUE,
@@ -29,7 +30,8 @@ from linepose.output.figures.style import (
     blank_figure,
     styled,
 )
-from linepose.pipeline.stages import samples_from_table
+from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.stages import DIAGNOSTICS, samples_from_table
 from linepose.pipeline.table_checks import stage_rows, usable_rows
 
 _COLOURS = (BLUE, RED, GREEN, SKY, ORANGE, PURPLE)
@@ -122,3 +124,42 @@ def autocorrelation_caption(diagnostics: pd.DataFrame, n_steps: int) -> str:
 def _chain(samples: pd.DataFrame) -> Floats:
     usable_rows(samples, ["walker", "step", *POSE_COLUMNS], "samples")
     return samples_from_table(samples, POSE_COLUMNS)
+
+
+def _diagnostics_caption(r: Calibration) -> str:
+    n_steps = int(r.samples["step"].max()) + 1
+    return autocorrelation_caption(r.results.table("diagnostics", DIAGNOSTICS), n_steps)
+
+
+def _trace(r: Calibration) -> Figure:
+    marked = {name: pose for name, pose in r.marked_poses().items() if name != "hand measured"}
+    return trace(r.samples, marked)
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "trace",
+        "Trace of the chain",
+        "",
+        "each pose parameter over the steps of the chain",
+        (
+            "diagnostics",
+            "mcmc/inliers",
+            "pose",
+        ),
+        _trace,
+        lambda r: trace_caption(r.results.table("diagnostics", DIAGNOSTICS)),
+    ),
+    FigureEntry(
+        "autocorrelation",
+        "Autocorrelation of the chain",
+        "",
+        "autocorrelation of each pose parameter against the lag in steps",
+        (
+            "mcmc/inliers",
+            "diagnostics",
+        ),
+        lambda r: autocorrelation(r.samples),
+        _diagnostics_caption,
+    ),
+)

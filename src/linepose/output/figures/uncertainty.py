@@ -1,12 +1,16 @@
 """Figure 9: one standard deviation of each pose parameter against the number of observations."""
 
+from typing import Final
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from linepose.experiments.uncertainty import UNCERTAINTY
 from linepose.geometry.pose import SIGMA_COLUMNS
+from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, GREEN, HALF_PAGE_IN, RED, blank_figure, styled
 from linepose.pipeline.table_checks import stage_rows, usable_rows
 
@@ -65,3 +69,16 @@ def uncertainty_caption(table: pd.DataFrame) -> str:
         f"the likelihood's curvature. The largest: {told[0]} with all observations, {told[1]} with the accepted ones. "
         "Fewer observations give larger sigmas; that the outliers were wrong does not show in them."
     )
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "uncertainty",
+        "Uncertainty against observations",
+        "Figure 9",
+        "lines of the sigma of each pose parameter against the number of observations",
+        ("uncertainty",),
+        lambda r: uncertainty(r.results.table("uncertainty", UNCERTAINTY)),
+        lambda r: uncertainty_caption(r.results.table("uncertainty", UNCERTAINTY)),
+    ),
+)

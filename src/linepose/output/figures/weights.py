@@ -1,10 +1,14 @@
 """What the robust noise model makes of each view and point: weights, where outlier removal says in or out."""
 
+from typing import Final
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from linepose.experiments.noise_models import WEIGHTS
+from linepose.output.figures.entry import FigureEntry, without
 from linepose.output.figures.style import BLUE, RED, WIDE_IN, blank_figure, styled
 from linepose.pipeline.table_checks import usable_rows
 
@@ -58,3 +62,17 @@ def weights_caption(table: pd.DataFrame) -> str:
         f"an error comes from the tail. The lowest of views: {lowest}. {same}The lowest of points: "
         f"{int(point['point'])} in observation {int(point['observation'])} ({point['point_weight']:.2f})."
     )
+
+
+FIGURES: Final = (
+    FigureEntry(
+        "weights",
+        "Weights of the robust noise model",
+        "",
+        "bars of each view's weight above a matrix of each point's, observations across",
+        ("weights",),
+        lambda r: weights(r.results.table("weights", WEIGHTS)),
+        lambda r: weights_caption(r.results.table("weights", WEIGHTS)),
+        without("noise_models"),
+    ),
+)

@@ -14,8 +14,8 @@ from matplotlib.text import Text
 from PIL import Image
 
 from linepose.errors import LineposeError
-from linepose.output.figures.catalogue import FIGURES
 from linepose.output.figures.entry import FIGURES as SCHEMA
+from linepose.output.figures.registry import FIGURES
 from linepose.output.figures.render import render_figures
 from linepose.output.figures.style import HALF_PAGE_IN, LEAST_PT, PNG_DPI, blank_figure, save
 from linepose.output.report.platform_sections import platform_sections

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from linepose.errors import InputError
-from linepose.output.figures.catalogue import FIGURES
+from linepose.output.figures.registry import FIGURES
 from linepose.output.report.pictures import embedded
 from linepose.output.report.provenance import settings_text
 from linepose.pipeline.evidence import gather_evidence, tilt_spread_deg
