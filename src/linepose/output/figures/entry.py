@@ -19,8 +19,8 @@ FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "
 class FigureEntry:
     """One figure: file stem, title, the paper's figure or nothing, what it shows, and how it is made.
 
-    `needs` names the results that it is drawn from, as far as the platform has them. `left_out` says in a sentence why a
-    platform has none of it, and is empty where it should have one.
+    `needs` names the results that it is drawn from, as far as the platform has them. `left_out` says in a sentence why
+    a platform has none of it, and is empty where it should have one.
     """
 
     name: str
