@@ -86,6 +86,11 @@ def reads(reader, folder):
     return set(results.results._read)
 
 
+@pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in NOT_MADE], ids=lambda e: e.name)
+def test_an_entry_names_the_results_that_its_figure_is_drawn_from(drawn, entry):
+    assert reads(entry.draw, drawn[0]) | reads(entry.caption, drawn[0]) <= set(entry.needs)
+
+
 @pytest.fixture(scope="module")
 def readers(drawn):
     """Everything that is made from results, with the tables that each reads."""
