@@ -14,6 +14,7 @@ from linepose.experiments.registry import (
     compared_platforms,
     wanted_experiments,
 )
+from linepose.output.report.summary_file import summaries_on_disk
 from linepose.pipeline import code_digest, sections
 from linepose.pipeline.file_list import lost_files
 from linepose.pipeline.parent_process import COMMAND, SNAKEMAKE, exit_with_process
