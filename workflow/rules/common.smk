@@ -33,8 +33,7 @@ onstart:
     try:
         hold_run_lock(Path())
     except LineposeError as error:
-        logger.error(f"linepose: {error}")
-        raise SystemExit(1) from None
+        raise SystemExit(f"linepose: {error}") from None  # told on the error stream
 
 
 try:
