@@ -55,9 +55,9 @@ class Project:
         for name, values in platforms.items():
             (config / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(dict(values)))
 
-    def start(self, *arguments: str, cores: int = 2) -> subprocess.Popen[str]:
+    def start(self, *arguments: str, cores: int = 2, snakefile: Path = ROOT / "Snakefile") -> subprocess.Popen[str]:
         """The workflow, begun in a session of its own, so that all its processes can be killed at once."""
-        command = ["-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]
+        command = ["-m", "snakemake", "--snakefile", str(snakefile), "--cores", str(cores)]
         return self._start(*command, *arguments)
 
     def start_linepose(self, *arguments: str) -> subprocess.Popen[str]:
