@@ -19,12 +19,14 @@ include: "workflow/rules/inputs.smk"
 include: "workflow/rules/simulation.smk"
 include: "workflow/rules/calibration.smk"
 include: "workflow/rules/experiments.smk"
-include: "workflow/rules/outputs.smk"
 
 
 if Path("config/paper").is_dir():
 
     include: "workflow/rules/paper.smk"
+
+
+include: "workflow/rules/outputs.smk"
 
 
 rule all:
