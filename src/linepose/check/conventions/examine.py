@@ -18,7 +18,6 @@ from linepose.check.conventions.recording import Recording
 from linepose.errors import EstimationError, InputError
 from linepose.estimation.wide_search import whitened_residuals
 from linepose.geometry import rotations
-from linepose.geometry.distance import pose_difference
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 
@@ -117,17 +116,14 @@ def explain(mistake: Mistake, recording_at: RecordingAt, sigmas: HandSigmas) -> 
 def _fit(likelihood: Likelihood, hand: Floats, sigmas: HandSigmas) -> tuple[Floats, float]:
     """The best pose (6,) near the hand-measured one, and half the sum of squares there."""
     scale = np.repeat([sigmas.position_m, sigmas.angle_rad], 3)
+    rotation = rotations.matrix_from_rotation_vector(hand[3:])
 
-    def residuals(step: Floats) -> Floats:
-        pose = _moved(hand, step * scale)
-        return np.concatenate([whitened_residuals(likelihood, pose), pose_difference(pose, hand) / scale])
+    def moved(step: Floats) -> Floats:
+        turn = rotations.matrix_from_rotation_vector(step[3:])
+        return np.concatenate([hand[:3] + step[:3], rotations.rotation_vector_from_matrix(turn @ rotation)])
+
+    def residuals(unit: Floats) -> Floats:
+        return np.concatenate([whitened_residuals(likelihood, moved(unit * scale)), unit])
 
     found = least_squares(residuals, np.zeros(len(scale)), max_nfev=_MAXIMUM_STEPS, ftol=_TOLERANCE, xtol=_TOLERANCE)
-    return _moved(hand, found.x * scale), float(found.cost)
-
-
-def _moved(pose: Floats, step: Floats) -> Floats:
-    """A pose (6,) moved (m) and turned by a small rotation (rad)."""
-    turn = rotations.matrix_from_rotation_vector(step[3:])
-    matrix = turn @ rotations.matrix_from_rotation_vector(pose[3:])
-    return np.concatenate([pose[:3] + step[:3], rotations.rotation_vector_from_matrix(matrix)])
+    return moved(found.x * scale), float(found.cost)
