@@ -36,7 +36,8 @@ def present_section(project: Project, platform: str, name: str, recorded: Any, e
     if name in GROUPS:
         return {key: present_section(project, platform, key, value, experiments) for key, value in recorded.items()}
     if name == PLATFORM:
-        found: Any = platform_section(project, platform)
+        whole = project.platforms[platform].model_dump(mode="json")  # figures record more than a calibration does
+        found: Any = {key: value for key, value in whole.items() if key in recorded or key not in _OF_NO_EFFECT}
     elif name == OTHERS:
         found = {other: platform_section(project, other) for other in recorded if other in project.platforms}
     elif name in _SAMPLING_OF_PLATFORM:
