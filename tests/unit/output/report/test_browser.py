@@ -12,7 +12,7 @@ MEASURE = """(() => {
     page: document.documentElement.scrollWidth,
     images: images.length,
     loaded: images.filter(one => one.complete && one.naturalWidth > 0).length,
-    dead: [...document.links].filter(one => !document.getElementById(one.hash.slice(1))).length,
+    dead: [...document.links].filter(one => one.hash && !document.getElementById(one.hash.slice(1))).length,
   };
 })()"""
 
