@@ -42,7 +42,7 @@ readme-bench: $(STAMP) ## Measure speed and put the figures into docs/benchmarks
 	$(MAKE) --silent bench > build/bench.txt
 	$(BIN)/python benchmarks/into_readme.py < build/bench.txt
 
-reference: $(STAMP) ## Make docs/configuration.md and workflow/schemas from the code
+reference: $(STAMP) ## Make docs/configuration.md from the code
 	$(BIN)/python -m linepose.output.reference
 
 images: $(STAMP) ## Make the pictures of README and docs, from results/

@@ -19,7 +19,7 @@ from linepose.likelihood.published import PublishedLikelihood
 from linepose.pipeline.batches import batch_ranges, run_batches
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-import surveys
+from unit.likelihood import surveys
 
 ROOT = Path(__file__).resolve().parents[1]
 GRIDS = (10, 15, 30)  # cells in each direction; cost should grow with their square

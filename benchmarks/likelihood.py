@@ -14,13 +14,12 @@ import numpy as np
 from numba import njit
 
 from linepose.geometry.camera import Camera
-from linepose.likelihood.operations import floating_point_operations
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.survey.observations import Survey
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-import reference
-import surveys
+from operations import floating_point_operations
+from unit.likelihood import reference, surveys
 
 POSE = np.array([0.189, -0.142, -0.794, -0.822, 0.738, -1.429])
 GOALS_MS = {16: (0.022, 0.011), 25: (0.046, 0.023)}  # single, batched on two cores

@@ -19,8 +19,7 @@ from linepose.estimation.sampling import sample
 from linepose.likelihood.published import PublishedLikelihood
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-import reference
-import surveys
+from unit.likelihood import reference, surveys
 
 ROOT = Path(__file__).resolve().parents[1]
 GOALS_S = {16: (0.05, 0.8), 25: ("", 1.5)}

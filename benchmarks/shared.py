@@ -16,8 +16,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-import field_data
-import small_survey
+from unit.likelihood import field_data, small_survey
 
 from linepose.arrays import Floats
 from linepose.estimation.diagnostics import diagnose_samples

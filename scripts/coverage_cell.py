@@ -9,7 +9,6 @@ with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.experiments.coverage import COVERAGE_SURVEYS, Cell
     from linepose.pipeline.batches import batch_ranges, inputs_digest, remove_finished, run_batches
-    from linepose.pipeline.progress import shown
     from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
@@ -28,9 +27,7 @@ with stage(snakemake) as log:
     ranges = batch_ranges(study.n_surveys, snakemake.params.batch_size)
     told = {key: value for key, value in snakemake.params.items() if key != "batch_size"}
     work = Path(snakemake.params.work) / inputs_digest(told, [])
-    table = run_batches(
-        lambda name: cell.rows(ranges[name]), list(ranges), work, COVERAGE_SURVEYS, snakemake.threads, shown()
-    )
+    table = run_batches(lambda name: cell.rows(ranges[name]), list(ranges), work, COVERAGE_SURVEYS, snakemake.threads)
     write_table(table, snakemake.output[0], COVERAGE_SURVEYS)
     remove_finished(work)
     held = [(table["credibility"] < nominal).mean() for nominal in (0.68, 0.95)]

@@ -1,5 +1,6 @@
 """Sample the posterior of the pose at each stage of the outlier removal."""
 
+import sys
 from pathlib import Path
 
 from adapter import stage
@@ -11,7 +12,6 @@ with stage(snakemake) as log:
     from linepose.estimation.sampling import sample, stage_seed
     from linepose.pipeline.file_list import write_file_list
     from linepose.pipeline.platform_likelihood import platform_likelihood
-    from linepose.pipeline.progress import shown
     from linepose.pipeline.stages import OPTIMA, SAMPLES, sample_table
     from linepose.survey.observations import OBSERVATIONS, survey_from_table
     from linepose.tables import read_table, with_parameters, write_table
@@ -26,7 +26,7 @@ with stage(snakemake) as log:
     schema = with_parameters(SAMPLES, names[6:])
     for name, numbers in stages.items():
         seed = stage_seed(snakemake.params.seed, len(numbers))
-        chain = sample(likelihood.select(numbers), optima.loc[name], seed, settings, shown())
+        chain = sample(likelihood.select(numbers), optima.loc[name], seed, settings, sys.stderr.isatty())
         write_table(sample_table(chain, names), Path(snakemake.output.samples) / f"{name}.parquet", schema)
         log.info("%s: %d samples, acceptance %.2f", name, chain.log_likelihood.size, chain.acceptance_fraction.mean())
     write_file_list(Path(snakemake.output.samples), Path(snakemake.output.files))

@@ -16,7 +16,6 @@ from linepose.estimation.optimise import Search
 from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
 from linepose.experiments.accepted import Accepted, Reference, read_accepted, read_reference
 from linepose.pipeline.batches import run_batches
-from linepose.pipeline.progress import shown
 from linepose.tables import read_table
 
 if TYPE_CHECKING:
@@ -96,7 +95,7 @@ class Inputs:
 
     def in_batches(self, task: Callable[[str], pd.DataFrame], names: Sequence[str], schema: pa.Schema) -> pd.DataFrame:
         """The tables of all named batches, one below the other; those that a killed run finished are not made again."""
-        return run_batches(task, names, self.work, schema, self.n_processes, shown())
+        return run_batches(task, names, self.work, schema, self.n_processes)
 
 
 def log_rows(logger: logging.Logger, message: str, table: pd.DataFrame, columns: Sequence[str]) -> None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from linepose.arrays import Floats
 from linepose.geometry.rotations import (
@@ -37,18 +37,15 @@ class PoseWithCovariance:
     @property
     def matrix(self) -> Floats:
         """Homogeneous transform (4, 4) that takes points of the camera frame to the body frame (m)."""
-        transform = np.eye(4)
-        transform[:3, :3] = matrix_from_rotation_vector(self.pose[3:])
-        transform[:3, 3] = self.pose[:3]
-        return transform
+        return np.asarray(self._transform().as_matrix())
 
     @property
     def inverse_matrix(self) -> Floats:
         """Homogeneous transform (4, 4) that takes points of the body frame to the camera frame (m)."""
-        inverse = np.eye(4)
-        inverse[:3, :3] = matrix_from_rotation_vector(self.pose[3:]).T
-        inverse[:3, 3] = -inverse[:3, :3] @ self.pose[:3]
-        return inverse
+        return np.asarray(self._transform().inv().as_matrix())
+
+    def _transform(self) -> RigidTransform:
+        return RigidTransform.from_components(self.pose[:3], Rotation.from_rotvec(self.pose[3:]))
 
     @property
     def quaternion_wxyz(self) -> Floats:

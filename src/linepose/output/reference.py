@@ -1,6 +1,6 @@
-"""The configuration explained: a page for people and JSON schemas for editors, both made from the models.
+"""The configuration explained: a page for people, made from the models.
 
-`python -m linepose.output.reference` writes docs/configuration.md and workflow/schemas/.
+`python -m linepose.output.reference` writes docs/configuration.md.
 """
 
 import json
@@ -28,10 +28,10 @@ _Platform = create_model(
     ),
 )
 
-_PARTS: dict[str, tuple[str, type[Settings]]] = {
-    "config": ("config/config.yaml", Study),
-    "platform": ("config/platforms/NAME.yaml", _Platform),
-    "dataset": ("config/datasets/NAME.yaml", DatasetSection),
+_PARTS: dict[str, type[Settings]] = {
+    "config/config.yaml": Study,
+    "config/platforms/NAME.yaml": _Platform,
+    "config/datasets/NAME.yaml": DatasetSection,
 }
 _INTRODUCTION = """# Configuration
 
@@ -45,21 +45,10 @@ This page is made from the code by `make reference`.
 def reference_page() -> str:
     """Every key of every configuration file in Markdown tables: key, default, meaning with its unit."""
     parts = [_INTRODUCTION]
-    for title, model in _PARTS.values():
+    for title, model in _PARTS.items():
         rows = "\n".join(f"| `{key}` | {default} | {meaning} |" for key, default, meaning in _rows(model, ""))
         parts.append(f"## {title}\n\n| key | default | meaning |\n| --- | --- | --- |\n{rows}\n")
     return "\n".join(parts)
-
-
-def json_schemas() -> dict[str, str]:
-    """A JSON schema for each kind of file, by file name; editors complete and check with it."""
-    schemas = {f"{name}.schema.json": model.model_json_schema() for name, (_, model) in _PARTS.items()}
-    schemas["platform.schema.json"]["properties"]["like"] = {
-        "type": "string",
-        "description": "Name of the platform from which everything is taken that this file does not say.",
-    }
-    schemas["platform.schema.json"].pop("required", None)
-    return {name: json.dumps(schema, indent=2) + "\n" for name, schema in schemas.items()}
 
 
 def _rows(model: type[BaseModel], prefix: str) -> list[tuple[str, str, str]]:
@@ -89,13 +78,9 @@ def _sections(annotation: Any) -> list[type[BaseModel]]:
 
 
 def write_reference(root: Path) -> None:
-    """Write the page and the schemas below the repository's root."""
+    """Write the page below the repository's root."""
     (root / "docs").mkdir(exist_ok=True)
     (root / "docs" / "configuration.md").write_text(reference_page(), encoding="utf-8")
-    folder = root / "workflow" / "schemas"
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, text in json_schemas().items():
-        (folder / name).write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

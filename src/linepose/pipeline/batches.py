@@ -30,9 +30,7 @@ FORKS: Final = sys.platform == "linux"
 _task: Task | None = None
 
 
-def run_batches(
-    task: Task, names: Sequence[str], folder: Path, schema: pa.Schema, n_processes: int, show_progress: bool = False
-) -> pd.DataFrame:
+def run_batches(task: Task, names: Sequence[str], folder: Path, schema: pa.Schema, n_processes: int) -> pd.DataFrame:
     """The tables of all named batches, one below the other in the given order.
 
     `task` makes the table of the batch of a name; `folder` keeps each as NAME.parquet, written whole or not at all,
@@ -40,7 +38,7 @@ def run_batches(
     caller must not have run compiled code on several threads before, which does not survive a fork.
     """
     waiting = [name for name in names if not _file(folder, name).is_file()]
-    bar = tqdm(total=len(names), initial=len(names) - len(waiting), unit="batch", disable=not show_progress)
+    bar = tqdm(total=len(names), initial=len(names) - len(waiting), unit="batch", disable=None)
     with bar:
         for name, table in _made(task, waiting, n_processes):
             write_table(table, _file(folder, name), schema)

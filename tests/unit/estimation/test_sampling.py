@@ -2,7 +2,6 @@ import emcee
 import numpy as np
 import pytest
 
-import linepose.estimation.sampling
 from linepose.errors import EstimationError, InputError
 from linepose.estimation.diagnostics import diagnose_samples
 from linepose.estimation.noise_models import noise_model
@@ -149,7 +148,7 @@ def test_fitted_proposals_go_without_a_curvature(gaussian, pose_covariance, monk
     def none(*_):
         raise EstimationError("open")
 
-    monkeypatch.setattr(linepose.estimation.sampling, "laplace_covariance", none)
+    monkeypatch.setattr("linepose.estimation.optimise.laplace_covariance", none)
     mean = gaussian.measured.mean(axis=0)
     chain = sample(gaussian, mean, 1, IndependenceSettings(n_walkers=48, n_burn_in=1200, n_steps=600))
     # the warm-up starts off scale, so only the size of the sigmas: to a tenth, some hundreds of effective samples

@@ -1,17 +1,12 @@
 from pathlib import Path
 
-from linepose.output.reference import json_schemas, reference_page
+from linepose.output.reference import reference_page
 
 ROOT = Path(__file__).parents[3]
 
 
 def test_committed_page_is_what_the_code_says():
     assert (ROOT / "docs" / "configuration.md").read_text() == reference_page()
-
-
-def test_committed_schemas_are_what_the_code_says():
-    for name, text in json_schemas().items():
-        assert (ROOT / "workflow" / "schemas" / name).read_text() == text
 
 
 def test_every_key_is_described():

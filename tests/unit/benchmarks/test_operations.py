@@ -1,8 +1,11 @@
 import ast
+import sys
+from pathlib import Path
 
 import pytest
 
-from linepose.likelihood.operations import count_operations, floating_point_operations
+sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
+from operations import count_operations, floating_point_operations
 
 
 @pytest.mark.parametrize(
