@@ -1,0 +1,1 @@
+"""The adjustment: our estimator."""

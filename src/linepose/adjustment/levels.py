@@ -1,0 +1,60 @@
+"""Levels: the scales of the variance components, which the adjustment estimates from the data, and their priors.
+
+Navigation errors are scaled in units of the reported sigmas, pixels in the camera's sigma, lateness in lines.
+"""
+
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from linepose.rotations import Floats
+
+
+class Levels(NamedTuple):
+    """Scales of the error process, all positive; zero switches a component off.
+
+    drift: the Gauss-Markov part of the navigation error; white: its part that is independent from measurement to
+    measurement; constant: its part that a view shares; pixel: noise along the line; lateness: noise across the line
+    (lines); correlation_time_s: of the drift; attitude: factor of the reported attitude sigmas in all three parts.
+    """
+
+    drift: float
+    white: float
+    constant: float
+    pixel: float
+    lateness: float
+    correlation_time_s: float
+    attitude: float
+
+
+LEVEL_NAMES: Final = Levels._fields
+N_LEVELS: Final = len(LEVEL_NAMES)
+START: Final = Levels(0.5, 0.5, 0.5, 0.5, 0.5, 60.0, 1.0)
+
+
+@dataclass(frozen=True)
+class LevelPriors:
+    """Log-normal prior of every level: its median, and its sigma in the natural logarithm."""
+
+    median: Levels = Levels(0.5, 0.5, 0.5, 0.5, 0.5, 300.0, 1.0)
+    log_sigma: Levels = Levels(1.5, 1.5, 1.5, 1.5, 0.7, 2.0, 0.5)
+
+    def log_density(self, log_levels: Floats, estimated: Floats) -> float:
+        """Logarithm of the density of the logarithms of the levels (7,), but for a constant; those `estimated` count.
+
+        `estimated` (7,) is 1 for a level that counts and 0 for one that is held.
+        """
+        scaled = (log_levels - np.log(self.median)) / np.asarray(self.log_sigma)
+        return float(-0.5 * np.sum(estimated * scaled**2))
+
+
+def levels_from_log(log_levels: Floats) -> Levels:
+    """Levels of their natural logarithms (7,); minus infinity is a component that is switched off."""
+    return Levels(*np.exp(np.asarray(log_levels, dtype=float)).tolist())
+
+
+def log_from_levels(levels: Levels) -> Floats:
+    """Natural logarithms (7,) of the levels; minus infinity for zero."""
+    with np.errstate(divide="ignore"):
+        return np.log(np.asarray(levels, dtype=float))

@@ -1,0 +1,124 @@
+"""Every measurement linearised at the camera's pose, its point and the corrected body pose.
+
+With b the point in the body's axes seen from the camera, `b = R_wb^T (P - p) - r`, and `q = R_bc^T b` in the camera's,
+the point is seen at
+
+    u = f x (1 + k1 x^2 + k2 x^4) + u0,   v = f y,   x = q_x / q_z,   y = q_y / q_z,   f in pixels.
+
+The line observes u, and v = 0 at the time of its exposure. The body pose is the reported one plus a correction c, all
+six numbers added: position (m), Euler angles (rad). The linear model of a measurement is
+
+    e = y - h + J c0 = J_theta d_theta + J_P dP + J c + n
+
+at the present correction c0, so that the corrections themselves, not steps of them, are what the error process knows.
+theta: lever arm r (3, m), small rotation on the left of R_bc (3, rad), principal point u0 (px), focal length (m).
+"""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from linepose.adjustment.compiling import kernel
+from linepose.rotations import Floats
+
+N_THETA: Final = 8
+
+
+class Optics(NamedTuple):
+    """The camera on the body: lever_arm_m (3,), body_from_camera (3, 3), and its intrinsics."""
+
+    lever_arm_m: Floats
+    body_from_camera: Floats
+    principal_point_px: float
+    focal_length_m: float
+    pixel_pitch_m: float
+    k1: float
+    k2: float
+
+
+class Linearised(NamedTuple):
+    """L measurements, rows u and v in pixels.
+
+    residual_px (L, 2): y - h; by_theta (L, 2, 8); by_point (L, 2, 3); by_body (L, 2, 6).
+    """
+
+    residual_px: Floats
+    by_theta: Floats
+    by_point: Floats
+    by_body: Floats
+
+
+def empty_linearised(n_measurements: int) -> Linearised:
+    """Room for `linearise`."""
+    return Linearised(
+        np.zeros((n_measurements, 2)),
+        np.zeros((n_measurements, 2, N_THETA)),
+        np.zeros((n_measurements, 2, 3)),
+        np.zeros((n_measurements, 2, 6)),
+    )
+
+
+@kernel
+def linearise(
+    u_px: Floats,
+    body_pose: Floats,
+    point_of: np.ndarray,
+    points_m: Floats,
+    optics: Optics,
+    out: Linearised,
+) -> int:
+    """Fill `out` at body poses (L, 6), corrected, and points (K, 3) of which measurement l sees `point_of[l]`.
+
+    Returns the number of measurements whose point is not in front of the camera; `out` is of use only if it is none.
+    """
+    behind = 0
+    r = optics.lever_arm_m
+    c = optics.body_from_camera
+    f = optics.focal_length_m / optics.pixel_pitch_m
+    for line in range(u_px.shape[0]):
+        pose = body_pose[line]
+        cr, sr = np.cos(pose[3]), np.sin(pose[3])
+        cp, sp = np.cos(pose[4]), np.sin(pose[4])
+        cy, sy = np.cos(pose[5]), np.sin(pose[5])
+        w00, w01, w02 = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
+        w10, w11, w12 = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
+        w20, w21, w22 = -sp, cp * sr, cp * cr
+        point = points_m[point_of[line]]
+        d0, d1, d2 = point[0] - pose[0], point[1] - pose[1], point[2] - pose[2]
+        b0 = w00 * d0 + w10 * d1 + w20 * d2 - r[0]
+        b1 = w01 * d0 + w11 * d1 + w21 * d2 - r[1]
+        b2 = w02 * d0 + w12 * d1 + w22 * d2 - r[2]
+        depth = c[0, 2] * b0 + c[1, 2] * b1 + c[2, 2] * b2
+        if not depth > 0.0:
+            behind += 1
+            continue
+        x = (c[0, 0] * b0 + c[1, 0] * b1 + c[2, 0] * b2) / depth
+        y = (c[0, 1] * b0 + c[1, 1] * b1 + c[2, 1] * b2) / depth
+        x2 = x * x
+        radial = x * (1.0 + x2 * (optics.k1 + x2 * optics.k2))
+        out.residual_px[line, 0] = u_px[line] - optics.principal_point_px - f * radial
+        out.residual_px[line, 1] = -f * y
+        by_x = f * (1.0 + x2 * (3.0 * optics.k1 + x2 * 5.0 * optics.k2)) / depth
+        by_y = f / depth
+        for row in range(2):
+            if row == 0:
+                g0, g1, g2 = by_x * (c[0, 0] - x * c[0, 2]), by_x * (c[1, 0] - x * c[1, 2]), by_x * (c[2, 0] - x * c[2, 2])
+            else:
+                g0, g1, g2 = by_y * (c[0, 1] - y * c[0, 2]), by_y * (c[1, 1] - y * c[1, 2]), by_y * (c[2, 1] - y * c[2, 2])
+            theta = out.by_theta[line, row]
+            theta[0], theta[1], theta[2] = -g0, -g1, -g2
+            theta[3], theta[4], theta[5] = g1 * b2 - g2 * b1, g2 * b0 - g0 * b2, g0 * b1 - g1 * b0
+            theta[6] = 1.0 - row
+            theta[7] = (radial if row == 0 else y) / optics.pixel_pitch_m
+            h0 = w00 * g0 + w01 * g1 + w02 * g2
+            h1 = w10 * g0 + w11 * g1 + w12 * g2
+            h2 = w20 * g0 + w21 * g1 + w22 * g2
+            by_point = out.by_point[line, row]
+            by_point[0], by_point[1], by_point[2] = h0, h1, h2
+            t0, t1, t2 = h1 * d2 - h2 * d1, h2 * d0 - h0 * d2, h0 * d1 - h1 * d0
+            body = out.by_body[line, row]
+            body[0], body[1], body[2] = -h0, -h1, -h2
+            body[3] = t0 * w00 + t1 * w10 + t2 * w20
+            body[4] = t1 * cy - t0 * sy
+            body[5] = t2
+    return behind

@@ -1,0 +1,180 @@
+"""A survey laid out for the adjustment: observed points only, one row a measurement, in order of time."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linepose.adjustment.motion import lateness_of_views
+from linepose.adjustment.process import ErrorStructure
+from linepose.camera import Camera
+from linepose.errors import InputError
+from linepose.observations import Survey
+from linepose.rotations import Floats
+
+NEGATIVE_EIGENVALUE: Final = 1e-9  # of the largest: rounding in a file, not an invalid covariance
+_RAYS: Final = 2  # that a point needs, of which nothing else is known
+
+
+@dataclass(frozen=True)
+class KnownPoints:
+    """What is known of points before any measurement: position_m (M, 3) and its information (M, 3, 3), zero for none.
+
+    A height that is known to s is `diag(0, 0, 1/s^2)`; a control point `I/s^2`.
+    """
+
+    position_m: Floats
+    information: Floats
+
+
+@dataclass(frozen=True)
+class Measurements:
+    """L measurements of K points in N views, in order of time.
+
+    row, column (L,): where in the survey each is; number (N,): of the views, in order of time; view (L,), point (L,):
+    row of N and K; points (K,): columns of the survey; u_px (L,); body_pose (L, 6): position (m), Euler angles (rad);
+    timed: whether the measurements have times; known: of the K points.
+    """
+
+    row: NDArray[np.int64]
+    column: NDArray[np.int64]
+    number: NDArray[np.int64]
+    view: NDArray[np.int64]
+    point: NDArray[np.int64]
+    points: NDArray[np.int64]
+    u_px: Floats
+    body_pose: Floats
+    structure: ErrorStructure
+    timed: bool
+    known: KnownPoints
+
+    @property
+    def n_points(self) -> int:
+        """Number of points K."""
+        return len(self.points)
+
+    @property
+    def n_views(self) -> int:
+        """Number of views N that have a measurement."""
+        return len(self.number)
+
+
+def measurements_from_survey(
+    survey: Survey, camera: Camera, known: KnownPoints | None = None, line_period_s: float | None = None
+) -> Measurements:
+    """The measurements of all points that two views have, or of which something is known.
+
+    A point on a single ray can follow any pose without error: it says nothing, and is left out. Raises InputError where
+    no point is left, a body pose or covariance is of no use, or the times of two views overlap.
+    """
+    known = known or KnownPoints(np.zeros((survey.n_points, 3)), np.zeros((survey.n_points, 3, 3)))
+    seen = np.isfinite(survey.u_px)
+    usable = (seen.sum(axis=0) >= _RAYS) | (seen.any(axis=0) & np.any(known.information != 0, axis=(1, 2)))
+    row, column = np.nonzero(seen & usable)
+    if len(row) == 0:
+        raise InputError(
+            "observations",
+            f"{survey.n_observations} observations, no point that two of them have",
+            "at least one such point",
+            "select more observations of the same pattern",
+        )
+    time_us = survey.time_us[row, column]
+    timed = bool(time_us.max() > time_us.min())
+    order, view_rows = _in_order_of_time(survey, row, time_us, timed)
+    row, column, time_us = row[order], column[order], time_us[order]
+    view = _positions(view_rows, survey.n_observations)[row]
+    body_pose = np.concatenate([survey.position_m[row, column], survey.euler_rad[row, column]], axis=1)
+    covariance = survey.covariance[row, column]
+    _check_finite(survey, row, column, body_pose, covariance)
+    begins = np.diff(view, prepend=-1) != 0
+    motion, late_px = lateness_of_views(body_pose, time_us, view, camera.sigmas.v_px, line_period_s)
+    gap_s = np.diff(time_us.astype(float), prepend=-np.inf) * 1e-6
+    points, point = np.unique(column, return_inverse=True)
+    structure = ErrorStructure(
+        root=np.stack([symmetric_root(c, int(survey.number[r])) for c, r in zip(covariance, row, strict=True)]),
+        motion=motion,
+        late_px=late_px,
+        gap_s=gap_s,
+        begins=begins,
+        view_of=view,
+        sigma_u_px=camera.sigmas.u_px,
+    )
+    return Measurements(
+        row=row,
+        column=column,
+        number=survey.number[view_rows],
+        view=view,
+        point=point.astype(np.int64),
+        points=points.astype(np.int64),
+        u_px=np.ascontiguousarray(survey.u_px[row, column]),
+        body_pose=body_pose,
+        structure=structure,
+        timed=timed,
+        known=KnownPoints(known.position_m[points], known.information[points]),
+    )
+
+
+def symmetric_root(covariance: Floats, number: int) -> Floats:
+    """S R^1/2 (6, 6) of a covariance, S its sigmas and R^1/2 the symmetric root of its correlations.
+
+    The symmetric root is continuous in the covariance, so that one process can run through all of them. A singular or
+    zero covariance is allowed; raises InputError that names the observation for one with negative eigenvalues.
+    """
+    variance = np.diagonal(covariance)
+    sigma = np.sqrt(np.maximum(variance, 0.0))
+    safe = np.where(sigma > 0, sigma, 1.0)
+    scaled = covariance / safe / safe[:, None]
+    values, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
+    if np.any(variance < 0) or values[0] < -NEGATIVE_EIGENVALUE * max(values[-1], 1.0):
+        raise InputError(
+            f"observation {number}",
+            f"a covariance with variances {variance.tolist()} that is not positive semidefinite",
+            "a symmetric matrix without negative eigenvalues",
+            "check which columns of the navigation record are read",
+        )
+    return sigma[:, None] * ((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
+
+
+def _in_order_of_time(
+    survey: Survey, row: NDArray[np.int64], time_us: NDArray[np.int64], timed: bool
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Order (L,) of the measurements, and the rows (N,) of the survey in that order; as given without times."""
+    if not timed:
+        return np.arange(len(row)), np.unique(row)
+    rows = np.unique(row)
+    first = np.array([time_us[row == r].min() for r in rows])
+    last = np.array([time_us[row == r].max() for r in rows])
+    by_time = np.lexsort((last, first))
+    rows, first, last = rows[by_time], first[by_time], last[by_time]
+    overlap = np.flatnonzero(first[1:] < last[:-1])
+    if len(overlap):
+        one, two = (int(survey.number[rows[k]]) for k in (overlap[0], overlap[0] + 1))
+        raise InputError(
+            f"observations {one} and {two}",
+            "times that repeat or run back from one to the other",
+            "one view after the other",
+            "correct the time stamps, or leave one of the two out",
+        )
+    rank = _positions(rows, survey.n_observations)[row]
+    return np.lexsort((time_us, rank)), rows
+
+
+def _positions(rows: NDArray[np.int64], n: int) -> NDArray[np.int64]:
+    positions = np.full(n, -1, dtype=np.int64)
+    positions[rows] = np.arange(len(rows))
+    return positions
+
+
+def _check_finite(
+    survey: Survey, row: NDArray[np.int64], column: NDArray[np.int64], body_pose: Floats, covariance: Floats
+) -> None:
+    for name, values in (("body pose", body_pose), ("covariance", covariance)):
+        bad = np.nonzero(~np.isfinite(values).reshape(len(values), -1).all(axis=1))[0]
+        if len(bad):
+            raise InputError(
+                f"observation {survey.number[row[bad[0]]]}, point {column[bad[0]]}",
+                f"a {name} that is not finite",
+                "finite numbers for every observed point",
+                "correct the navigation record or leave the point out",
+            )

@@ -1,0 +1,74 @@
+"""How far the body moves in one line: what a measurement that is a line late is wrong by.
+
+Across the scan line no pixel is measured but a time, so noise there is lateness. Its image follows the camera's pose as
+the residuals do, which noise in pixels would not. The rate is a straight line through the reported poses of a view; the
+duration of a line is what the time stamps are multiples of.
+"""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linepose.rotations import Floats
+
+_LONGEST_GAP_US: Final = 200_000.0  # between two measurements whose difference of time is still compared with multiples
+_SHORTEST_PERIOD_US: Final = 100.0
+_COHERENCE: Final = 0.9  # of the differences with multiples of a period, 1 is perfect
+_FEWEST_DIFFERENCES: Final = 20
+
+
+def body_rates(body_pose: Floats, time_us: NDArray[np.int64], view: NDArray[np.int64]) -> Floats:
+    """Rates (L, 6) of position (m/s) and Euler angles (rad/s), one a view; NaN where a view's times do not differ."""
+    rates = np.full(body_pose.shape, np.nan)
+    for one in np.unique(view):
+        rows = np.flatnonzero(view == one)
+        time_s = (time_us[rows] - time_us[rows].min()) * 1e-6
+        centred = time_s - time_s.mean()
+        spread = centred @ centred
+        if spread > 0:
+            pose = body_pose[rows].copy()
+            pose[:, 3:] = np.unwrap(pose[:, 3:], axis=0)
+            rates[rows] = centred @ (pose - pose[0]) / spread
+    return rates
+
+
+def line_period_s(time_us: NDArray[np.int64], view: NDArray[np.int64]) -> float | None:
+    """Duration of a line (s), the longest of which differences of time within views are multiples; None if of none."""
+    differences = np.concatenate([_differences(np.sort(time_us[view == one])) for one in np.unique(view)])
+    if len(differences) < _FEWEST_DIFFERENCES:
+        return None
+    longest = float(np.quantile(differences, 0.25)) * 4
+    best: float | None = None
+    for period in np.geomspace(longest, _SHORTEST_PERIOD_US, 4000):
+        if abs(np.mean(np.exp(2j * np.pi * differences / period)).real) > _COHERENCE:
+            best = period
+            break
+    if best is None:
+        return None
+    near = best * np.linspace(0.97, 1.0, 301)
+    coherence = [np.mean(np.exp(2j * np.pi * differences / period)).real for period in near]
+    return float(near[int(np.argmax(coherence))]) * 1e-6
+
+
+def _differences(ascending_us: NDArray[np.int64]) -> Floats:
+    one = np.diff(ascending_us).astype(float)
+    return one[(one > _SHORTEST_PERIOD_US) & (one < _LONGEST_GAP_US)]
+
+
+def lateness_of_views(
+    body_pose: Floats,
+    time_us: NDArray[np.int64],
+    view: NDArray[np.int64],
+    sigma_v_px: float,
+    period_s: float | None,
+) -> tuple[Floats, Floats]:
+    """Motion in one line (L, 6), and where it is not known the sigma across the line (L,) that stands for it (px).
+
+    Of the two one is zero. Without a period given, and where the time stamps do not tell it, motion is not known.
+    """
+    period = period_s if period_s is not None else line_period_s(time_us, view)
+    rates = body_rates(body_pose, time_us, view)
+    known = np.isfinite(rates).all(axis=1) & (period is not None)
+    motion = np.where(known[:, None], rates * (period or 0.0), 0.0)
+    return motion, np.where(known, 0.0, 2.0 * sigma_v_px)

@@ -1,0 +1,109 @@
+"""Levels by restricted maximum likelihood (REML), with their priors.
+
+At one linearisation, the density of the levels given the data, points and camera integrated out, is
+
+    -log p = 1/2 (min chi^2 + log|C| + log|N|) - log prior
+
+C the covariance of the measurements under the error process, N the normal equations with priors. Both determinants
+belong to it (Neyman and Scott: without them levels are too small), at the same linearisation as chi squared.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.optimize import minimize
+
+from linepose.adjustment.levels import N_LEVELS, LevelPriors, Levels, levels_from_log, log_from_levels
+from linepose.adjustment.measurements import Measurements
+from linepose.adjustment.normal import Pass
+from linepose.adjustment.process import Weights
+from linepose.adjustment.solve import Model, pass_at
+from linepose.adjustment.state import Knowledge
+from linepose.rotations import Floats
+
+STEP: Final = 1e-5  # of a logarithm, for differences
+_WORST: Final = 1e10  # in place of infinity, where the density is zero
+
+
+@dataclass(frozen=True)
+class Restricted:
+    """The density of the levels at one linearisation.
+
+    free (F,): indices of the levels that are estimated; fixed: logarithms (7,) of all, of which those are replaced.
+    """
+
+    measurements: Measurements
+    knowledge: Knowledge
+    model: Model
+    weights: Weights
+    priors: LevelPriors
+    free: tuple[int, ...]
+    fixed: Floats
+
+    def log_levels(self, free_logs: Floats) -> Floats:
+        """Logarithms (7,) of all levels from those that are free (F,)."""
+        logs = self.fixed.copy()
+        logs[list(self.free)] = free_logs
+        return logs
+
+    def done(self, free_logs: Floats) -> Pass:
+        """The pass at these levels (F,)."""
+        levels = levels_from_log(self.log_levels(free_logs))
+        return pass_at(self.measurements, self.knowledge, self.model, levels, self.weights)[1]
+
+    def negative_log_density(self, free_logs: Floats) -> float:
+        """The negative logarithm of the density of the logarithms of free levels (F,), but for a constant."""
+        done = self.done(free_logs)
+        return self.negative_log_density_of(done, free_logs)
+
+    def negative_log_density_of(self, done: Pass, free_logs: Floats) -> float:
+        """The same from a pass that is done; a large number where the density is zero."""
+        value = 0.5 * (done.chi_squared + done.log_determinant) - self._log_prior(free_logs)
+        return value if np.isfinite(value) else _WORST
+
+    def _log_prior(self, free_logs: Floats) -> float:
+        estimated = np.zeros(N_LEVELS)
+        estimated[list(self.free)] = 1.0
+        logs = np.where(estimated > 0, self.log_levels(free_logs), 0.0)
+        return self.priors.log_density(logs, estimated)
+
+    def gradient(self, free_logs: Floats) -> Floats:
+        """Gradient (F,) of the negative logarithm, by central differences."""
+        out = np.empty(len(free_logs))
+        for i in range(len(free_logs)):
+            ahead, behind = free_logs.copy(), free_logs.copy()
+            ahead[i] += STEP
+            behind[i] -= STEP
+            out[i] = (self.negative_log_density(ahead) - self.negative_log_density(behind)) / (2 * STEP)
+        return out
+
+    def start(self, levels: Levels) -> Floats:
+        """Logarithms (F,) of the free levels among these."""
+        return log_from_levels(levels)[list(self.free)]
+
+
+def most_likely(restricted: Restricted, start: Floats) -> tuple[Floats, int]:
+    """The free levels' logarithms (F,) of largest density near a start (F,), and the number of evaluations."""
+    found = minimize(
+        restricted.negative_log_density,
+        start,
+        jac=restricted.gradient,
+        method="L-BFGS-B",
+        bounds=[(-12.0, 14.0)] * len(start),
+        options={"maxiter": 60, "ftol": 1e-9, "gtol": 1e-3},
+    )
+    return np.asarray(found.x), int(found.nfev)
+
+
+def hessian(gradient: Callable[[Floats], Floats], at: Floats, step: float = 0.05) -> Floats:
+    """Hessian (F, F) by central differences of a gradient, symmetric."""
+    rows = []
+    for i in range(len(at)):
+        ahead, behind = at.copy(), at.copy()
+        ahead[i] += step
+        behind[i] -= step
+        rows.append((gradient(ahead) - gradient(behind)) / (2 * step))
+    matrix = np.array(rows)
+    return (matrix + matrix.T) / 2

@@ -1,0 +1,172 @@
+"""Gauss-Newton over points, camera and body poses at fixed levels, with Levenberg's damping of the camera's step.
+
+All is linearised anew at the corrected body poses, so what is minimised is
+
+    chi^2 = sum of the squared unit errors of the process + squared pixel noise + priors
+
+and nothing else: no determinant decides on the pose. The body poses are incidental parameters; in the parametrisation
+that is orthogonal to the pose, integrating them out leaves the profile likelihood without any.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from linepose.adjustment.levels import Levels
+from linepose.adjustment.linearise import Linearised, empty_linearised, linearise
+from linepose.adjustment.measurements import Measurements
+from linepose.adjustment.normal import N_POSE, Pass, design, one_pass, solve_step, whitened_residual
+from linepose.adjustment.process import Components, ErrorImage, Weights, components, corrections, error_image
+from linepose.adjustment.state import Knowledge, State
+from linepose.adjustment.whitening import unwhiten
+from linepose.errors import EstimationError
+from linepose.rotations import Floats
+
+_LARGEST_DAMPING: Final = 1e8
+_LARGEST_TURN_RAD: Final = 0.3
+_LARGEST_SHIFT_M: Final = 1.0
+_LARGEST_FOCAL_SHARE: Final = 0.1
+
+
+@dataclass(frozen=True)
+class Model:
+    """The linear model at a state: what a pass needs at any levels; image: of unit errors, rows (2 L, n): all columns."""
+
+    state: State
+    linearised: Linearised
+    image: ErrorImage
+    rows: Floats
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A minimum of chi squared at fixed levels.
+
+    model, process, done: where it was last linearised, and the pass there; dual (L, 2): `C^-1 e` at the minimum;
+    z (L, 6), q (N, 6): the process there; n_steps; converged.
+    """
+
+    model: Model
+    process: Components
+    done: Pass
+    dual: Floats
+    z: Floats
+    q: Floats
+    n_steps: int
+    converged: bool
+
+    @property
+    def state(self) -> State:
+        """The state at the minimum."""
+        return self.model.state
+
+
+def model_at(measurements: Measurements, knowledge: Knowledge, state: State) -> Model | None:
+    """The linear model at a state; None where a point is not in front of the camera."""
+    linearised = empty_linearised(len(measurements.u_px))
+    behind = linearise(
+        measurements.u_px,
+        measurements.body_pose + state.correction,
+        measurements.point,
+        state.points_m,
+        state.optics(knowledge.camera),
+        linearised,
+    )
+    if behind:
+        return None
+    rows = design(linearised, state.correction, measurements.point, measurements.n_points)
+    return Model(state, linearised, error_image(measurements.structure, linearised), rows)
+
+
+def pass_at(
+    measurements: Measurements, knowledge: Knowledge, model: Model, levels: Levels, weights: Weights
+) -> tuple[Components, Pass]:
+    """The error process at these levels, and one pass of the linear model with it."""
+    structure = measurements.structure
+    process = components(structure, model.image, levels, weights)
+    prior = knowledge.prior(model.state, measurements)
+    return process, one_pass(model.rows, process, structure.view_of, structure.begins, prior)
+
+
+def solve(
+    measurements: Measurements,
+    knowledge: Knowledge,
+    start: State,
+    levels: Levels,
+    weights: Weights,
+    *,
+    tolerance: float = 1e-9,
+    max_steps: int = 60,
+    damping: float = 0.0,
+    pose_held: bool = False,
+) -> Solution:
+    """The minimum of chi squared near a start.
+
+    It has converged when a step would lower chi squared by less than `tolerance`, and chi squared moves by less than
+    that when it is linearised anew. With `pose_held` the pose keeps its start. Raises EstimationError where a point is
+    behind the camera at the start, or the normal equations are singular.
+    """
+    model = model_at(measurements, knowledge, start)
+    if model is None:
+        raise EstimationError(
+            "adjustment: a point lies behind the camera at the start; start from a pose nearer to the camera's"
+        )
+    process, done = pass_at(measurements, knowledge, model, levels, weights)
+    floor, steps, converged = damping, 0, False
+    structure = measurements.structure
+    while True:
+        step = _step(done, damping, pose_held)
+        if not np.all(np.isfinite(step)):
+            raise EstimationError(
+                "adjustment: singular normal equations; add observations from other directions, or drop points that "
+                "are seen from one direction only"
+            )
+        dual = unwhiten(done.factor, whitened_residual(done, step))
+        correction, z, q = corrections(structure, process, model.linearised, levels, weights, dual)
+        gain = done.chi_squared_before - _after(done, step)
+        if steps >= max_steps or (converged and gain < tolerance):
+            break
+        trial = model_at(measurements, knowledge, model.state.moved(_held(step), correction))
+        steps += 1
+        if trial is not None:
+            trial_process, trial_done = pass_at(measurements, knowledge, trial, levels, weights)
+            change = trial_done.chi_squared_before - done.chi_squared_before
+            if change <= max(0.1 * done.chi_squared_before, 10.0) if steps <= 2 else change <= _slack(done, tolerance):
+                converged = gain < tolerance and abs(change) < tolerance
+                model, process, done = trial, trial_process, trial_done
+                damping = max(floor, damping / 10) if damping > 1e-7 else 0.0
+                continue
+        if damping > _LARGEST_DAMPING:
+            break
+        damping = max(10 * damping, 1e-3)
+    return Solution(model, process, done, dual, z, q, steps, converged)
+
+
+def _slack(done: Pass, tolerance: float) -> float:
+    return max(1e-3 * done.chi_squared_before * 0, tolerance)
+
+
+def _after(done: Pass, step: Floats) -> float:
+    """Chi squared of the linear model after a step."""
+    upper = done.upper
+    n = len(step)
+    return float(done.chi_squared + np.sum((upper[:n, n] - upper[:n, :n] @ step) ** 2))
+
+
+def _held(step: Floats) -> Floats:
+    """The step, shortened where the camera's part is longer than the linear model can mean."""
+    camera = np.abs(step[-N_POSE:])
+    share = max(camera[:3].max() / _LARGEST_SHIFT_M, camera[3:].max() / _LARGEST_TURN_RAD, 1.0)
+    return step / share
+
+
+def _step(done: Pass, damping: float, pose_held: bool) -> Floats:
+    n_points = len(done.upper) - 1 - 8
+    if not pose_held:
+        return solve_step(done.upper, n_points, damping)
+    n = len(done.upper) - 1
+    inner = n - N_POSE
+    cut = done.upper[:inner, [*range(inner), n]]
+    square = np.vstack([cut, np.zeros(inner + 1)])
+    return np.concatenate([solve_step(square, n_points, damping), np.zeros(N_POSE)])

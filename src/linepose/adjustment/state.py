@@ -1,0 +1,104 @@
+"""The present estimate, and what is known of the camera beside the measurements."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linepose import rotations
+from linepose.adjustment.hand_measured import HandMeasured
+from linepose.adjustment.linearise import Optics
+from linepose.adjustment.measurements import Measurements
+from linepose.adjustment.normal import N_CAMERA, N_INTRINSICS, Prior
+from linepose.camera import Camera
+from linepose.rotations import Floats
+
+
+@dataclass(frozen=True)
+class State:
+    """Camera, points and body poses.
+
+    position_m (3,), rotation (3, 3): of the camera in the body; principal_point_px, focal_length_m; points_m (K, 3);
+    correction (L, 6): of the body poses.
+    """
+
+    position_m: Floats
+    rotation: Floats
+    principal_point_px: float
+    focal_length_m: float
+    points_m: Floats
+    correction: Floats
+
+    @property
+    def pose(self) -> Floats:
+        """The pose (6,) with a rotation vector."""
+        return np.concatenate([self.position_m, rotations.rotation_vector_from_matrix(self.rotation)])
+
+    def optics(self, camera: Camera) -> Optics:
+        """As the kernels take it."""
+        return Optics(
+            np.ascontiguousarray(self.position_m),
+            np.ascontiguousarray(self.rotation),
+            float(self.principal_point_px),
+            float(self.focal_length_m),
+            camera.pixel_pitch_m,
+            camera.k1,
+            camera.k2,
+        )
+
+    def moved(self, step: Floats, correction: Floats) -> "State":
+        """The state after a step (3 K + 8,) of points, principal point, focal length and pose, with corrections."""
+        points, camera = step[:-N_CAMERA].reshape(-1, 3), step[-N_CAMERA:]
+        turn = rotations.matrix_from_rotation_vector(camera[N_INTRINSICS + 3 :])
+        return State(
+            self.position_m + camera[N_INTRINSICS : N_INTRINSICS + 3],
+            turn @ self.rotation,
+            self.principal_point_px + float(camera[0]),
+            self.focal_length_m + float(camera[1]),
+            self.points_m + points,
+            correction,
+        )
+
+
+def state_at(pose: Floats, camera: Camera, points_m: Floats, n_measurements: int) -> State:
+    """The state at a pose (6,) and points (K, 3), intrinsics as the camera's file has them, nothing corrected."""
+    return State(
+        np.asarray(pose[:3], dtype=float),
+        rotations.matrix_from_rotation_vector(pose[3:]),
+        camera.principal_point_px,
+        camera.focal_length_m,
+        points_m,
+        np.zeros((n_measurements, 6)),
+    )
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """The camera as its file has it, and the hand-measured pose where it is a prior."""
+
+    camera: Camera
+    hand: HandMeasured | None
+
+    def prior(self, state: State, measurements: Measurements) -> Prior:
+        """As quadratic forms about a state."""
+        sigma = np.array([self.camera.sigmas.principal_point_px, self.camera.sigmas.focal_length_m])
+        error = np.array(
+            [
+                self.camera.principal_point_px - state.principal_point_px,
+                self.camera.focal_length_m - state.focal_length_m,
+            ]
+        )
+        information, vector = np.zeros((N_CAMERA, N_CAMERA)), np.zeros(N_CAMERA)
+        information[:N_INTRINSICS, :N_INTRINSICS] = np.diag(sigma**-2)
+        vector[:N_INTRINSICS] = error / sigma**2
+        chi_squared = float(np.sum((error / sigma) ** 2))
+        if self.hand is not None:
+            pose, pose_vector, pose_chi_squared = self.hand.information(state.position_m, state.rotation)
+            information[N_INTRINSICS:, N_INTRINSICS:] = pose
+            vector[N_INTRINSICS:] = pose_vector
+            chi_squared += pose_chi_squared
+        known = measurements.known
+        off = known.position_m - state.points_m
+        points_vector = np.einsum("kij,kj->ki", known.information, off)
+        return Prior(
+            information, vector, known.information, points_vector, chi_squared + float(np.sum(off * points_vector))
+        )

@@ -1,0 +1,148 @@
+"""The filter pass: residuals and columns of the linear model made independent and of unit variance, in linear time.
+
+C, the covariance of all measurements under the error process, is never formed. A Kalman filter whose state is the
+error process factors it: its innovations, divided by their roots, are `W e` with `W^T W = C^-1`, W lower triangular.
+Applied to the residual and to every column of the design it gives the normal equations and chi squared; the sum of the
+innovations' log-determinants is log|C|; its adjoint, backwards, gives `C^-1 e`, and with it every correction.
+"""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from linepose.adjustment.compiling import kernel
+from linepose.adjustment.process import Components
+from linepose.rotations import Floats
+
+N_STATE: Final = 12
+
+
+class Factor(NamedTuple):
+    """The filter's gains, which do not depend on data.
+
+    observe (L, 2, 12): image of a unit of the state; gain (L, 12, 2): state by whitened innovation; root (L, 3): that
+    of the innovation's covariance, inverted, as (1/l00, l10, 1/l11); decay (L,); begins (L,); log_determinant: log|C|.
+    """
+
+    observe: Floats
+    gain: Floats
+    root: Floats
+    decay: Floats
+    begins: np.ndarray
+    log_determinant: float
+
+
+@kernel
+def factorise(process: Components, view: np.ndarray, begins: np.ndarray) -> Factor:
+    """The factor of the covariance of all measurements; log_determinant is NaN where it is not positive definite."""
+    n = process.decay.shape[0]
+    observe, gain, root = np.empty((n, 2, N_STATE)), np.empty((n, N_STATE, 2)), np.empty((n, 3))
+    p = np.eye(N_STATE)
+    cross = np.empty((2, N_STATE))
+    log_determinant = 0.0
+    for line in range(n):
+        constant, decay = process.constant[view[line]], process.decay[line]
+        for row in range(2):
+            for i in range(6):
+                observe[line, row, i] = process.drift * process.by_state[line, row, i]
+                observe[line, row, 6 + i] = constant * process.by_state[line, row, i]
+        for i in range(6):
+            if begins[line]:
+                for j in range(N_STATE):
+                    p[6 + i, j] = 0.0
+                    p[j, 6 + i] = 0.0
+                p[6 + i, 6 + i] = 1.0
+        decay2 = decay * decay
+        for i in range(6):
+            for j in range(6):
+                p[i, j] *= decay2
+            for j in range(6, 12):
+                p[i, j] *= decay
+                p[j, i] *= decay
+            p[i, i] += 1.0 - decay2
+        h0, h1 = observe[line, 0], observe[line, 1]
+        c0, c1 = cross[0], cross[1]
+        c0[:] = 0.0
+        c1[:] = 0.0
+        for i in range(N_STATE):
+            a, b, row_p = h0[i], h1[i], p[i]
+            for j in range(N_STATE):
+                c0[j] += a * row_p[j]
+                c1[j] += b * row_p[j]
+        s00, s10, s11 = process.noise[line, 0], process.noise[line, 1], process.noise[line, 2]
+        for i in range(N_STATE):
+            s00 += c0[i] * h0[i]
+            s10 += c1[i] * h0[i]
+            s11 += c1[i] * h1[i]
+        l00 = np.sqrt(s00)
+        l10 = s10 / l00
+        l11 = np.sqrt(s11 - l10 * l10)
+        log_determinant += 2.0 * (np.log(l00) + np.log(l11))
+        i00, i11 = 1.0 / l00, 1.0 / l11
+        root[line, 0], root[line, 1], root[line, 2] = i00, l10, i11
+        for i in range(N_STATE):
+            c0[i] *= i00
+            c1[i] = (c1[i] - l10 * c0[i]) * i11
+            gain[line, i, 0] = c0[i]
+            gain[line, i, 1] = c1[i]
+        for i in range(N_STATE):
+            a, b, row_p = c0[i], c1[i], p[i]
+            for j in range(N_STATE):
+                row_p[j] -= a * c0[j] + b * c1[j]
+    return Factor(observe, gain, root, process.decay, begins, log_determinant)
+
+
+@kernel
+def whiten(factor: Factor, rows: Floats) -> None:
+    """Replace columns (2 L, n), rows u and v of every measurement, by W times them."""
+    n_columns = rows.shape[1]
+    x = np.zeros((N_STATE, n_columns))
+    for line in range(factor.decay.shape[0]):
+        e0, e1, decay = rows[2 * line], rows[2 * line + 1], factor.decay[line]
+        h0, h1, gain = factor.observe[line, 0], factor.observe[line, 1], factor.gain[line]
+        if factor.begins[line]:
+            x[6:] = 0.0
+        for i in range(0, N_STATE, 4):
+            x0, x1, x2, x3 = x[i], x[i + 1], x[i + 2], x[i + 3]
+            d0 = decay if i < 6 else 1.0
+            d2 = decay if i < 4 else 1.0
+            a0, a1, a2, a3 = h0[i] * d0, h0[i + 1] * d0, h0[i + 2] * d2, h0[i + 3] * d2
+            b0, b1, b2, b3 = h1[i] * d0, h1[i + 1] * d0, h1[i + 2] * d2, h1[i + 3] * d2
+            for j in range(n_columns):
+                e0[j] -= a0 * x0[j] + a1 * x1[j] + a2 * x2[j] + a3 * x3[j]
+                e1[j] -= b0 * x0[j] + b1 * x1[j] + b2 * x2[j] + b3 * x3[j]
+        i00, l10, i11 = factor.root[line, 0], factor.root[line, 1], factor.root[line, 2]
+        for j in range(n_columns):
+            w = e0[j] * i00
+            e0[j] = w
+            e1[j] = (e1[j] - l10 * w) * i11
+        for i in range(0, N_STATE, 2):
+            x0, x1 = x[i], x[i + 1]
+            d = decay if i < 6 else 1.0
+            a0, b0, a1, b1 = gain[i, 0], gain[i, 1], gain[i + 1, 0], gain[i + 1, 1]
+            for j in range(n_columns):
+                x0[j] = d * x0[j] + a0 * e0[j] + b0 * e1[j]
+                x1[j] = d * x1[j] + a1 * e0[j] + b1 * e1[j]
+
+
+@kernel
+def unwhiten(factor: Factor, whitened: Floats) -> Floats:
+    """W^T times whitened residuals (L, 2): `C^-1 e` of what was whitened; (L, 2)."""
+    n = whitened.shape[0]
+    dual = np.empty((n, 2))
+    adjoint = np.zeros(N_STATE)
+    for line in range(n - 1, -1, -1):
+        w0, w1 = whitened[line, 0], whitened[line, 1]
+        for i in range(N_STATE):
+            w0 += factor.gain[line, i, 0] * adjoint[i]
+            w1 += factor.gain[line, i, 1] * adjoint[i]
+        w1 *= factor.root[line, 2]
+        w0 = (w0 - factor.root[line, 1] * w1) * factor.root[line, 0]
+        dual[line, 0], dual[line, 1] = w0, w1
+        for i in range(N_STATE):
+            adjoint[i] -= factor.observe[line, 0, i] * w0 + factor.observe[line, 1, i] * w1
+            if i < 6:
+                adjoint[i] *= factor.decay[line]
+            elif factor.begins[line]:
+                adjoint[i] = 0.0
+    return dual
