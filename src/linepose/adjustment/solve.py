@@ -8,7 +8,7 @@ and nothing else: no determinant decides on the pose. The body poses are inciden
 that is orthogonal to the pose, integrating them out leaves the profile likelihood without any.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np

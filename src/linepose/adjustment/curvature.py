@@ -1,0 +1,104 @@
+"""The curvature of chi squared in the pose, and what it does to the covariance.
+
+Body poses are estimated with the camera's (errors in variables), and the normal equations N are built at the estimates,
+whose noise inflates them: N is the variance of the score, but the slope of the score is the Hessian H in the pose of
+
+    psi = 1/2 min over points, body poses, principal point and focal length of chi^2
+
+so that the covariance of the pose is `H^-1 N H^-1`: the normal posterior's N^-1 mapped by `M = H^-1 N` on both sides.
+H by central differences of psi's gradient, which the envelope theorem gives: of what is minimised only the pose's
+normal equations are left.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from linepose import rotations
+from linepose.adjustment.levels import Levels
+from linepose.adjustment.measurements import Measurements
+from linepose.adjustment.normal import N_POSE, Pass, trailing_inverse
+from linepose.adjustment.process import Weights
+from linepose.adjustment.solve import Solution, solve
+from linepose.adjustment.state import Knowledge, State
+from linepose.errors import EstimationError
+from linepose.rotations import Floats
+
+HELD: Final = (0.25, 4.0)  # range in which the eigenvalues of H in units of N are held
+TRUSTED_EIGENVALUE: Final = 0.3  # the least one below which the covariance is not to be trusted
+STEP_SIGMAS: Final = 0.3
+_TOLERANCE: Final = 1e-5
+
+
+@dataclass(frozen=True)
+class Curvature:
+    """stretch (6, 6): M, in steps of position and small rotation; eigenvalues (6,): of H in units of N, ascending."""
+
+    stretch: Floats
+    eigenvalues: Floats
+
+    @property
+    def least_eigenvalue(self) -> float:
+        """The least curvature in units of the normal equations'; NaN where there is none to be had."""
+        return float(self.eigenvalues[0])
+
+
+def curvature(
+    measurements: Measurements, knowledge: Knowledge, solution: Solution, levels: Levels, weights: Weights
+) -> Curvature:
+    """The curvature at a solution; the identity with NaN eigenvalues where a neighbour has no solution."""
+    covariance = trailing_inverse(solution.done.upper, N_POSE)
+    lower = np.linalg.cholesky(np.linalg.inv(covariance))
+    directions = np.linalg.inv(lower)  # rows: steps of one sigma
+    hessian = np.empty((N_POSE, N_POSE))
+    try:
+        for i, direction in enumerate(directions):
+            scores = [
+                _score(measurements, knowledge, solution, levels, weights, sign * STEP_SIGMAS * direction)
+                for sign in (1.0, -1.0)
+            ]
+            hessian[i] = directions @ (scores[0] - scores[1]) / (2 * STEP_SIGMAS)
+    except EstimationError:
+        return Curvature(np.eye(N_POSE), np.full(N_POSE, np.nan))
+    values, vectors = np.linalg.eigh((hessian + hessian.T) / 2)
+    held = np.clip(values, *HELD)
+    stretch = directions.T @ (vectors / held) @ vectors.T @ lower.T
+    return Curvature(stretch, values)
+
+
+def _score(
+    measurements: Measurements,
+    knowledge: Knowledge,
+    solution: Solution,
+    levels: Levels,
+    weights: Weights,
+    step: Floats,
+) -> Floats:
+    """Gradient (6,) of psi at a step (6,) of the pose from the solution, by that step."""
+    full = np.concatenate([_response(solution.done, step), step])
+    state: State = solution.state.moved(full, solution.state.correction)
+    near = solve(
+        measurements, knowledge, state, levels, weights, tolerance=_TOLERANCE, max_steps=12, pose_held=True
+    )
+    gradient = pose_gradient(near.done)
+    gradient[3:] = rotations.small_rotation_by_rotation_vector(step[3:]).T @ gradient[3:]
+    return gradient
+
+
+def pose_gradient(done: Pass) -> Floats:
+    """Gradient (6,) of half the least chi squared at fixed pose, by a step of position and small rotation."""
+    n = len(done.upper) - 1
+    block = done.upper[n - N_POSE : n, n - N_POSE : n]
+    return -np.triu(block).T @ done.upper[n - N_POSE : n, n]
+
+
+def _response(done: Pass, step: Floats) -> Floats:
+    """How all other columns follow a step (6,) of the pose, by the linear model."""
+    n = len(done.upper) - 1
+    inner = n - N_POSE
+    right = -done.upper[:inner, inner:n] @ step
+    out = np.zeros(inner)
+    for i in range(inner - 1, -1, -1):
+        out[i] = (right[i] - done.upper[i, i + 1 : inner] @ out[i + 1 :]) / done.upper[i, i]
+    return out

@@ -1,0 +1,72 @@
+"""The estimate: Gauss-Newton at fixed levels and levels at a fixed linearisation, in turn, until neither moves."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from linepose.adjustment.levels import LEVEL_NAMES, Levels, levels_from_log, log_from_levels
+from linepose.adjustment.measurements import Measurements
+from linepose.adjustment.process import Weights
+from linepose.adjustment.reml import Restricted, most_likely
+from linepose.adjustment.settings import Settings
+from linepose.adjustment.solve import Solution, solve
+from linepose.adjustment.state import Knowledge, State
+from linepose.rotations import Floats
+
+LEVEL_TOLERANCE: Final = 5e-3  # of a logarithm, in one round
+_OF_DRIFT: Final = ("drift", "correlation_time_s")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Solution at the most likely levels; log_levels (F,): of those that are free; restricted: their density there."""
+
+    solution: Solution
+    levels: Levels
+    log_levels: Floats
+    restricted: Restricted
+    n_rounds: int
+    n_passes: int
+    converged: bool
+
+
+def free_levels(measurements: Measurements) -> tuple[int, ...]:
+    """Indices of the levels that the measurements can tell: without times there is no drift."""
+    return tuple(i for i, name in enumerate(LEVEL_NAMES) if measurements.timed or name not in _OF_DRIFT)
+
+
+def unit_weights(measurements: Measurements) -> Weights:
+    """No tails: every weight one."""
+    return Weights(np.ones(measurements.n_views), np.ones(len(measurements.u_px)))
+
+
+def estimate(
+    measurements: Measurements,
+    knowledge: Knowledge,
+    start: State,
+    levels: Levels,
+    weights: Weights,
+    settings: Settings,
+    *,
+    damping: float = 0.0,
+) -> Estimate:
+    """The estimate from a start; raises EstimationError as `solve` does."""
+    free = free_levels(measurements)
+    logs = log_from_levels(levels)
+    if not measurements.timed:
+        logs[LEVEL_NAMES.index("drift")] = -np.inf
+        levels = levels_from_log(logs)
+    state, passes, settled, rounds = start, 0, False, 0
+    while True:
+        solution = solve(measurements, knowledge, state, levels, weights, damping=damping)
+        restricted = Restricted(measurements, knowledge, solution.model, weights, settings.priors, free, logs)
+        before = restricted.start(levels)
+        if settled or rounds >= settings.max_rounds:
+            break
+        after, count = most_likely(restricted, before)
+        rounds, passes = rounds + 1, passes + count
+        logs = restricted.log_levels(after)
+        levels, state = levels_from_log(logs), solution.state
+        settled = bool(np.max(np.abs(after - before)) < LEVEL_TOLERANCE)
+    return Estimate(solution, levels, before, restricted, rounds, passes, settled and solution.converged)

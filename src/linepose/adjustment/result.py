@@ -1,0 +1,129 @@
+"""What the adjustment finds."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from linepose.adjustment.curvature import TRUSTED_EIGENVALUE
+from linepose.adjustment.importance import TRUSTED_SHAPE
+from linepose.adjustment.levels import Levels
+from linepose.rotations import Floats
+
+FEWEST_EFFECTIVE_DRAWS: Final = 20.0
+DISAGREEMENT_SIGMAS: Final = 3.0
+
+
+@dataclass(frozen=True)
+class Diagnostics:
+    """Whether the result can be trusted.
+
+    converged: chi squared and levels; n_rounds of both in turn; n_passes: evaluations of the levels' density;
+    chi_squared and degrees_of_freedom of the measurements; least_eigenvalue: of the curvature in units of the normal
+    equations, NaN where it could not be had; effective_draws, pareto_shape: of the draws of the levels;
+    disagreement_sigmas (6,): of the hand measurement from what the data alone say, NaN without one; open_directions:
+    names of the pose's parameters that the data leave to the hand measurement; drift_known: whether there are times;
+    heavy_tails: whether weights were needed; warnings: one line each.
+    """
+
+    converged: bool
+    n_rounds: int
+    n_passes: int
+    chi_squared: float
+    degrees_of_freedom: int
+    least_eigenvalue: float
+    effective_draws: float
+    pareto_shape: float
+    disagreement_sigmas: Floats
+    open_directions: tuple[str, ...]
+    drift_known: bool
+    heavy_tails: bool
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Adjustment:
+    """The estimated pose, how sure it is, and what the errors were; N observations of M points, as in the survey.
+
+    pose (6,): at the mode, with a rotation vector; covariance (6, 6): the posterior's, of the pose's parameters;
+    principal_point_px, focal_length_m; points_m (M, 3): from the survey's origin, NaN for a point left out;
+    levels: at their mode; level_intervals (7, 2): what holds each with 95 %, NaN for one that was not estimated;
+    corrections (N, M, 6): of the reported body poses (m, rad); constants (N, 6), drifts (N, M, 6): of the process, in
+    its own units; view_weight (N,), measurement_weight (N, M): 1 is as good as the levels say, towards 0 is bad;
+    normalised (N, M, 2): whitened residuals along and across the line, each a standard normal number if the model is
+    right; samples: independent draws of the pose in the columns of a chain (walker, step, pose, log_likelihood).
+    Everything of a measurement is NaN where there is none.
+    """
+
+    pose: Floats
+    covariance: Floats
+    principal_point_px: float
+    focal_length_m: float
+    points_m: Floats
+    levels: Levels
+    level_intervals: Floats
+    corrections: Floats
+    constants: Floats
+    drifts: Floats
+    view_weight: Floats
+    measurement_weight: Floats
+    normalised: Floats
+    samples: pd.DataFrame
+    diagnostics: Diagnostics
+
+    @property
+    def sigma(self) -> Floats:
+        """One standard deviation of each of the pose's parameters (6,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+
+def gridded(values: Floats, row: NDArray[np.int64], column: NDArray[np.int64], shape: tuple[int, int]) -> Floats:
+    """Values (L, ...) of measurements on the survey's grid (N, M, ...), NaN where there is none."""
+    grid = np.full((*shape, *values.shape[1:]), np.nan)
+    grid[row, column] = values
+    return grid
+
+
+def weighted_quantiles(values: Floats, weight: Floats, shares: tuple[float, ...]) -> Floats:
+    """Quantiles (Q,) of weighted values (D,)."""
+    order = np.argsort(values, kind="stable")
+    cumulated = (np.cumsum(weight[order]) - 0.5 * weight[order]) / np.sum(weight)
+    return np.interp(shares, cumulated, values[order])
+
+
+def warnings_of(
+    *,
+    converged: bool,
+    least_eigenvalue: float,
+    effective_draws: float,
+    pareto_shape: float,
+    disagreement_sigmas: Floats,
+    open_directions: tuple[str, ...],
+    drift_known: bool,
+) -> tuple[str, ...]:
+    """What a user should be told, one line each."""
+    said = []
+    if not converged:
+        said.append("the adjustment has not converged: start from a pose nearer to the camera's")
+    if not least_eigenvalue >= TRUSTED_EIGENVALUE:
+        said.append(
+            f"chi squared curves only {least_eigenvalue:.2f} of what the normal equations say in one direction, "
+            f"expected {TRUSTED_EIGENVALUE} or more: do not trust the sigmas; add observations"
+        )
+    if pareto_shape > TRUSTED_SHAPE or effective_draws < FEWEST_EFFECTIVE_DRAWS:
+        said.append(
+            f"draws of the levels are worth {effective_draws:.0f} (Pareto shape {pareto_shape:.2f}), expected "
+            f"{FEWEST_EFFECTIVE_DRAWS:.0f} or more (below {TRUSTED_SHAPE}): raise n_draws"
+        )
+    if np.any(np.abs(disagreement_sigmas) > DISAGREEMENT_SIGMAS):
+        said.append(
+            f"data and hand measurement disagree by {np.nanmax(np.abs(disagreement_sigmas)):.1f} sigmas: "
+            "check the hand measurement and its sigmas"
+        )
+    if open_directions:
+        said.append(f"the data leave {', '.join(open_directions)} to the hand measurement: add other motions")
+    if not drift_known:
+        said.append("without times drift of the navigation is not known and not allowed for")
+    return tuple(said)
