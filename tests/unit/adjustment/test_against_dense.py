@@ -1,0 +1,220 @@
+"""One pass against dense matrices: chi squared, determinants, covariance and corrections."""
+
+from dataclasses import replace
+
+import dense
+import numpy as np
+import pytest
+import timed_survey
+from scipy.optimize import least_squares
+
+from linepose.adjustment.estimate import unit_weights
+from linepose.adjustment.hand_measured import covariance_of_sigmas, hand_measured
+from linepose.adjustment.levels import Levels
+from linepose.adjustment.linearise import empty_linearised, linearise
+from linepose.adjustment.measurements import KnownPoints, measurements_from_survey
+from linepose.adjustment.normal import solve_step, trailing_inverse, whitened_residual
+from linepose.adjustment.process import Weights, corrections
+from linepose.adjustment.residuals import normalised_residuals
+from linepose.adjustment.solve import model_at, pass_at, solve
+from linepose.adjustment.start import start_points
+from linepose.adjustment.state import Knowledge, state_at
+from linepose.adjustment.whitening import unwhiten
+
+CAMERA = timed_survey.CAMERA
+HAND = timed_survey.POSE + np.array([0.03, -0.02, 0.04, 0.01, -0.02, 0.015])
+LEVELS = Levels(0.5, 0.2, 0.4, 0.6, 0.7, 25.0, 0.6)
+LIMITS = {
+    "all": LEVELS,
+    "white only": LEVELS._replace(drift=0.0, constant=0.0),
+    "constant only": LEVELS._replace(drift=0.0, white=0.0),
+    "drift that never ends": LEVELS._replace(constant=0.0, correlation_time_s=1e12),
+    "drift that ends at once": LEVELS._replace(constant=0.0, correlation_time_s=1e-9),
+    "no navigation error": LEVELS._replace(drift=0.0, constant=0.0, white=0.0),
+}
+
+
+class Case:
+    """A survey, a state with corrections that are not zero, weights that are not one, and the same in dense form."""
+
+    def __init__(self, levels, survey=None, known=None):
+        random = np.random.default_rng(5)
+        survey = survey or timed_survey.without(timed_survey.make_survey(5, 6, seed=3), (0, 1), (3, 2), (4, 5))
+        self.measurements = m = measurements_from_survey(survey, CAMERA, known, line_period_s=timed_survey.LINE_S)
+        self.knowledge = Knowledge(CAMERA, hand_measured(HAND, covariance_of_sigmas(0.1, np.deg2rad(2))))
+        n = len(m.u_px)
+        start = state_at(timed_survey.POSE, CAMERA, start_points(m, CAMERA, timed_survey.POSE), n)
+        self.state = replace(start, correction=1e-3 * random.normal(size=(n, 6)))
+        self.levels = levels
+        self.weights = Weights(random.uniform(0.3, 1.2, m.n_views), random.uniform(0.3, 1.2, n))
+        self.model = model_at(m, self.knowledge, self.state)
+        self.process, self.done = pass_at(m, self.knowledge, self.model, levels, self.weights)
+        self._dense(survey)
+
+    def _dense(self, survey):
+        m, state = self.measurements, self.state
+        residual, by_theta, by_point, by_body = dense.linearised(
+            CAMERA, state.position_m, state.rotation, m, state.points_m, m.body_pose + state.correction
+        )
+        time_s = survey.time_us[m.row, m.column] * 1e-6
+        weights = self.weights
+        self.of_bodies = dense.body_covariance(
+            m,
+            survey.covariance[m.row, m.column],
+            time_s,
+            m.structure.motion,
+            self.levels,
+            weights.of_view,
+            weights.of_measurement,
+        )
+        self.covariance, self.image = dense.measurement_covariance(
+            by_body, self.of_bodies, self.levels, CAMERA, weights.of_measurement
+        )
+        self.e = residual + self.image @ state.correction.ravel()
+        self.a = dense.design(m, by_theta, by_point)
+        prior = self.knowledge.prior(state, m)
+        self.information = np.zeros((self.a.shape[1],) * 2)
+        self.vector = np.zeros(self.a.shape[1])
+        self.information[-8:, -8:], self.vector[-8:] = prior.camera, prior.camera_vector
+        for k in range(m.n_points):
+            block = slice(3 * k, 3 * k + 3)
+            self.information[block, block] = prior.points[k]
+            self.vector[block] = prior.points_vector[k]
+        inverse = np.linalg.inv(self.covariance)
+        self.normal = self.a.T @ inverse @ self.a + self.information
+        self.right = self.a.T @ inverse @ self.e + self.vector
+        self.step = np.linalg.solve(self.normal, self.right)
+        self.chi_squared = self.e @ inverse @ self.e + prior.chi_squared - self.right @ self.step
+
+
+@pytest.fixture(params=LIMITS, scope="module")
+def case(request):
+    return Case(LIMITS[request.param])
+
+
+def test_derivatives_by_complex_step():
+    case = Case(LEVELS)
+    m, state = case.measurements, case.state
+    bodies = m.body_pose + state.correction
+    out = empty_linearised(len(m.u_px))
+    assert linearise(m.u_px, bodies, m.point, state.points_m, state.optics(CAMERA), out) == 0
+    expected = dense.linearised(CAMERA, state.position_m, state.rotation, m, state.points_m, bodies)
+    for found, value in zip(out, expected, strict=True):
+        # a product of some ten factors, each rounded once
+        assert np.allclose(found.reshape(value.shape), value, rtol=1e-12, atol=1e-12 * np.abs(value).max())
+
+
+def test_chi_squared_and_determinants(case):
+    assert case.done.chi_squared == pytest.approx(case.chi_squared, rel=1e-9)
+    expected = np.linalg.slogdet(case.covariance)[1] + np.linalg.slogdet(case.normal)[1]
+    assert case.done.log_determinant == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert case.done.factor.log_determinant == pytest.approx(np.linalg.slogdet(case.covariance)[1], rel=1e-9)
+
+
+def test_covariance_of_pose_and_intrinsics(case):
+    scale = np.sqrt(np.diag(np.linalg.inv(case.normal))[-8:])
+    for size in (6, 8):
+        expected = np.linalg.inv(case.normal)[-size:, -size:]
+        found = trailing_inverse(case.done.upper, size)
+        assert np.allclose((found - expected) / np.outer(scale[-size:], scale[-size:]), 0, atol=1e-7)
+
+
+def test_step(case):
+    sigma = np.sqrt(np.diag(np.linalg.inv(case.normal)))
+    found = solve_step(case.done.upper, 3 * case.measurements.n_points, 0.0)
+    assert np.allclose((found - case.step) / sigma, 0, atol=1e-8)
+
+
+def test_corrections_are_the_expected_errors_of_the_bodies(case):
+    left = case.e - case.a @ case.step
+    expected = (case.of_bodies @ case.image.T @ np.linalg.solve(case.covariance, left)).reshape(-1, 6)
+    dual = unwhiten(case.done.factor, whitened_residual(case.done, case.step))
+    found, z, q = corrections(
+        case.measurements.structure, case.process, case.model.linearised, case.levels, case.weights, dual
+    )
+    assert np.allclose(found / timed_survey.SIGMA, expected / timed_survey.SIGMA, rtol=0, atol=1e-9)
+    assert z.shape == (len(case.e) // 2, 6)
+    assert q.shape == (case.measurements.n_views, 6)
+
+
+def test_normalised_residuals_have_the_variance_of_the_model(case):
+    root = np.linalg.cholesky(case.covariance)
+    whitened = np.linalg.solve(root, case.e - case.a @ case.step)
+    columns = np.linalg.solve(root, case.a)
+    redundancy = 1 - np.einsum("ij,jk,ik->i", columns, np.linalg.inv(case.normal), columns)
+    found = normalised_residuals(case.done).ravel()
+    good = redundancy > 1e-4
+    assert np.allclose(found[good], (whitened / np.sqrt(np.maximum(redundancy, 1e-300)))[good], atol=1e-6)
+
+
+def test_without_times_views_follow_one_another_and_nothing_drifts():
+    survey = timed_survey.make_survey(4, 5, seed=8)
+    untimed = replace(survey, time_us=np.zeros_like(survey.time_us))
+    m = measurements_from_survey(untimed, CAMERA)
+    assert not m.timed
+    assert np.all(m.structure.motion == 0)
+    assert np.all(m.structure.late_px > 0)
+    case = Case(LEVELS._replace(drift=0.0), survey=untimed)
+    late = case.levels.lateness * case.measurements.structure.late_px
+    case.covariance += np.diag(np.column_stack([0 * late, late**2 / case.weights.of_measurement]).ravel())
+    assert case.done.factor.log_determinant == pytest.approx(np.linalg.slogdet(case.covariance)[1], rel=1e-9)
+
+
+def test_points_of_which_something_is_known():
+    survey = timed_survey.make_survey(3, 5, seed=4)
+    information = np.zeros((5, 3, 3))
+    information[1], information[3] = np.eye(3) / 0.02**2, np.diag([0.0, 0.0, 1 / 0.05**2])
+    case = Case(LEVELS, survey=survey, known=KnownPoints(np.zeros((5, 3)), information))
+    assert case.done.chi_squared == pytest.approx(case.chi_squared, rel=1e-9)
+    expected = np.linalg.slogdet(case.covariance)[1] + np.linalg.slogdet(case.normal)[1]
+    assert case.done.log_determinant == pytest.approx(expected, rel=1e-9)
+
+
+def test_least_squares_over_all_unknowns_finds_the_same_optimum():
+    survey = timed_survey.make_survey(4, 4, seed=12)
+    case = Case(LEVELS, survey=survey)
+    m, n = case.measurements, len(case.measurements.u_px)
+    weights = unit_weights(m)
+    found = solve(m, case.knowledge, replace(case.state, correction=np.zeros((n, 6))), LEVELS, weights, tolerance=1e-14)
+    plain = dense.body_covariance(
+        m,
+        survey.covariance[m.row, m.column],
+        survey.time_us[m.row, m.column] * 1e-6,
+        m.structure.motion,
+        LEVELS,
+        weights.of_view,
+        weights.of_measurement,
+    )
+    values, vectors = np.linalg.eigh(plain / np.outer(np.tile(timed_survey.SIGMA, n), np.tile(timed_survey.SIGMA, n)))
+    kept = values > 1e-12 * values[-1]
+    root = np.tile(timed_survey.SIGMA, n)[:, None] * vectors[:, kept] * np.sqrt(values[kept])
+    base = found.state
+    pixel = np.array([LEVELS.pixel * CAMERA.sigmas.u_px, 0.05])
+    hand = case.knowledge.hand
+
+    def residuals(x):
+        camera, points, latent = x[:8] * scale, x[8 : 8 + 3 * m.n_points].reshape(-1, 3), x[8 + 3 * m.n_points :]
+        bodies = m.body_pose + (root @ latent).reshape(-1, 6)
+        intrinsics = [
+            base.principal_point_px + camera[6] - CAMERA.principal_point_px,
+            base.focal_length_m + camera[7] - CAMERA.focal_length_m,
+        ]
+        step = np.concatenate([camera[:6], intrinsics])
+        rows = [
+            ([m.u_px[i], 0] - dense.project(CAMERA, base.position_m, base.rotation, step, bodies[i], points[k])) / pixel
+            for i, k in enumerate(m.point)
+        ]
+        information, vector, chi_squared = hand.information(
+            base.position_m + camera[:3], dense.vector_matrix(camera[3:6]) @ base.rotation
+        )
+        off = np.sqrt(max(chi_squared, 0.0))
+        sigmas = [CAMERA.sigmas.principal_point_px, CAMERA.sigmas.focal_length_m]
+        del information, vector
+        return np.concatenate([*rows, latent, [off], np.array(intrinsics) / sigmas])
+
+    scale = np.sqrt(np.diag(trailing_inverse(found.done.upper, 8)))[[2, 3, 4, 5, 6, 7, 0, 1]]
+    random = np.random.default_rng(1)
+    start = np.concatenate([0.5 * random.normal(size=8), base.points_m.ravel(), np.zeros(root.shape[1])])
+    best = least_squares(residuals, start, method="trf", x_scale="jac", xtol=1e-13, ftol=1e-14, gtol=1e-12)
+    assert 2 * best.cost == pytest.approx(found.done.chi_squared, rel=1e-6)
+    assert np.allclose(best.x[:8], 0, atol=2e-4)  # sigmas: the square root of what chi squared is flat by
