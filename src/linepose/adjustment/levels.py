@@ -48,6 +48,10 @@ class LevelPriors:
         scaled = (log_levels - np.log(self.median)) / np.asarray(self.log_sigma)
         return float(-0.5 * np.sum(estimated * scaled**2))
 
+    def gradient(self, log_levels: Floats) -> Floats:
+        """Gradient (7,) of the logarithm of the density by the logarithms of the levels (7,), each estimated."""
+        return -(log_levels - np.log(self.median)) / np.asarray(self.log_sigma) ** 2
+
 
 def levels_from_log(log_levels: Floats) -> Levels:
     """Levels of their natural logarithms (7,); minus infinity is a component that is switched off."""

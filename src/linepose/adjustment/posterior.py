@@ -6,10 +6,10 @@ equations; the curvature's stretch M maps mean and covariance of each about the 
 """
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
-from scipy.stats import multivariate_t, norm, qmc
+from scipy.stats import chi2, multivariate_t, norm, qmc
 
 from linepose.adjustment.importance import smoothed_weights
 from linepose.adjustment.normal import N_POSE, trailing_inverse
@@ -17,8 +17,8 @@ from linepose.adjustment.reml import Restricted
 from linepose.rotations import Floats
 
 DEGREES_OF_FREEDOM: Final = 5
-_LEAST_PRECISION, _LARGEST_PRECISION = 0.05, 1e4  # of a level's logarithm, in the proposal
-_STEP_SIGMAS: Final = 0.5
+FIRST_SHARE: Final = 0.35  # of the draws, from which the proposal is fitted anew
+DIFFERENCE: Final = 0.1  # of a logarithm, for the curvature
 
 
 @dataclass(frozen=True)
@@ -57,67 +57,92 @@ class Mixture:
         return steps[order], index[order]
 
 
-def curvature_of_levels(restricted: Restricted, mode: Floats) -> Floats:
-    """Precision (F, F) of the free levels' logarithms at the mode, by differences over about half a sigma."""
-    n = len(mode)
-    centre = restricted.negative_log_density(mode)
-    prior = 1 / np.asarray(restricted.priors.log_sigma)[list(restricted.free)] ** 2
-
-    def pair(width: Floats) -> tuple[Floats, Floats]:
-        ahead = np.array([restricted.negative_log_density(mode + row) for row in np.diag(width)])
-        behind = np.array([restricted.negative_log_density(mode - row) for row in np.diag(width)])
-        return ahead, behind
-
-    width = np.full(n, 0.1)
-    ahead, behind = pair(width)
-    second = np.clip((ahead + behind - 2 * centre) / width**2, prior, _LARGEST_PRECISION)
-    width = _STEP_SIGMAS / np.sqrt(second)
-    ahead, behind = pair(width)
-    precision = np.diag(np.clip((ahead + behind - 2 * centre) / width**2, _LEAST_PRECISION, _LARGEST_PRECISION))
-    for i in range(n):
-        for j in range(i):
-            step = np.zeros(n)
-            step[i], step[j] = width[i], width[j]
-            both = restricted.negative_log_density(mode + step) + restricted.negative_log_density(mode - step)
-            off = both - ahead[i] - behind[i] - ahead[j] - behind[j] + 2 * centre
-            precision[i, j] = precision[j, i] = off / (2 * width[i] * width[j])
-    scale = np.sqrt(np.diag(precision))
-    values, vectors = np.linalg.eigh(precision / np.outer(scale, scale))
-    return (vectors * np.maximum(values, 0.1)) @ vectors.T * np.outer(scale, scale)
-
-
 def mixture(restricted: Restricted, mode: Floats, stretch: Floats, n_draws: int, seed: int) -> Mixture:
-    """The pose's posterior, from the mode of the free levels' logarithms (F,) and the curvature's stretch (6, 6)."""
-    precision = curvature_of_levels(restricted, mode)
-    scale = np.linalg.inv(precision)
-    proposal = multivariate_t(mode, scale, df=DEGREES_OF_FREEDOM)
-    draws = _student_draws(mode, np.linalg.cholesky(scale), n_draws, seed)
-    density, means, covariances = np.empty(n_draws), np.empty((n_draws, N_POSE)), np.empty((n_draws, N_POSE, N_POSE))
-    for k, logs in enumerate(draws):
-        done = restricted.done(logs)
-        density[k] = restricted.negative_log_density_of(done, logs)
-        n = len(done.upper) - 1
-        covariances[k] = trailing_inverse(done.upper, N_POSE)
-        block = np.triu(done.upper[n - N_POSE : n, n - N_POSE : n])
-        means[k] = covariances[k] @ (block.T @ done.upper[n - N_POSE : n, n])
-    weight, shape = smoothed_weights(-density - proposal.logpdf(draws))
+    """The pose's posterior, from the mode of the free levels' logarithms (F,) and the curvature's stretch (6, 6).
+
+    A first share of the draws comes from the curvature at the mode, the rest from a proposal fitted to those; all count
+    as of the mixture of both.
+    """
+    n_first = int(FIRST_SHARE * n_draws)
+    first = Proposal(mode, proposal_covariance(restricted, mode))
+    drawn = [_components(restricted, first.draw(n_first, seed))]
+    weight, _ = smoothed_weights(-drawn[0].density - first.log_density(drawn[0].logs))
+    second = first.fitted(drawn[0].logs, weight)
+    drawn.append(_components(restricted, second.draw(n_draws - n_first, seed + 1)))
+    logs, density, mean, covariance = (np.concatenate([part[i] for part in drawn]) for i in range(4))
+    shares = np.log([n_first / n_draws, 1 - n_first / n_draws])
+    proposed = np.logaddexp(shares[0] + first.log_density(logs), shares[1] + second.log_density(logs))
+    weight, shape = smoothed_weights(-density - proposed)
     return Mixture(
         weight=weight,
-        mean=means @ stretch.T,
-        covariance=stretch @ covariances @ stretch.T,
-        log_levels=np.array([restricted.log_levels(logs) for logs in draws]),
+        mean=mean @ stretch.T,
+        covariance=stretch @ covariance @ stretch.T,
+        log_levels=np.array([restricted.log_levels(row) for row in logs]),
         negative_log_density=density,
         pareto_shape=shape,
     )
 
 
-def _student_draws(mode: Floats, root: Floats, n_draws: int, seed: int) -> Floats:
-    """Draws (D, F) of the proposal, from a scrambled Sobol sequence: evener than chance."""
-    n = len(mode)
-    power = int(np.ceil(np.log2(n_draws)))
-    uniform = qmc.Sobol(n + 1, rng=np.random.default_rng(seed)).random_base2(power)[:n_draws]
-    uniform = np.clip(uniform, 1e-9, 1 - 1e-9)
-    from scipy.stats import chi2
+def proposal_covariance(restricted: Restricted, mode: Floats) -> Floats:
+    """Covariance (F, F) of the free levels' logarithms from the curvature at the mode.
 
-    radius = np.sqrt(DEGREES_OF_FREEDOM / chi2.ppf(uniform[:, -1], DEGREES_OF_FREEDOM))
-    return mode + (norm.ppf(uniform[:, :-1]) * radius[:, None]) @ root.T
+    What the data do not curve has at most the prior's sigma: eigenvalues are in units of the prior's precision.
+    """
+    sigma = np.asarray(restricted.priors.log_sigma)[list(restricted.free)]
+    scaled = restricted.hessian(mode, DIFFERENCE) * np.outer(sigma, sigma)
+    values, vectors = np.linalg.eigh(scaled)
+    return (vectors / np.maximum(values, 1.0)) @ vectors.T * np.outer(sigma, sigma)
+
+
+class _Drawn(NamedTuple):
+    """Logarithms of levels (D, F), their negative log-density (D,), and the pose's mean (D, 6) and covariance there."""
+
+    logs: Floats
+    density: Floats
+    mean: Floats
+    covariance: Floats
+
+
+def _components(restricted: Restricted, logs: Floats) -> _Drawn:
+    count = len(logs)
+    density, mean, covariance = np.empty(count), np.empty((count, N_POSE)), np.empty((count, N_POSE, N_POSE))
+    for k, row in enumerate(logs):
+        done = restricted.done(row)
+        density[k] = restricted.negative_log_density_of(done, row)
+        n = len(done.upper) - 1
+        block = np.triu(done.upper[n - N_POSE : n, n - N_POSE : n])
+        covariance[k] = trailing_inverse(done.upper, N_POSE)
+        mean[k] = covariance[k] @ (block.T @ done.upper[n - N_POSE : n, n])
+    return _Drawn(logs, density, mean, covariance)
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A multivariate Student-t of levels' logarithms: centre (F,), scale (F, F)."""
+
+    centre: Floats
+    scale: Floats
+
+    def draw(self, count: int, seed: int) -> Floats:
+        """Draws (count, F) from a scrambled Sobol sequence: evener than chance."""
+        n = len(self.centre)
+        power = int(np.ceil(np.log2(max(count, 2))))
+        uniform = qmc.Sobol(n + 1, rng=np.random.default_rng(seed)).random_base2(power)[:count]
+        uniform = np.clip(uniform, 1e-9, 1 - 1e-9)
+        radius = np.sqrt(DEGREES_OF_FREEDOM / chi2.ppf(uniform[:, -1], DEGREES_OF_FREEDOM))
+        return self.centre + (norm.ppf(uniform[:, :-1]) * radius[:, None]) @ np.linalg.cholesky(self.scale).T
+
+    def log_density(self, logs: Floats) -> Floats:
+        """Logarithm of the density (D,) at logarithms (D, F)."""
+        return np.atleast_1d(multivariate_t(self.centre, self.scale, df=DEGREES_OF_FREEDOM).logpdf(logs))
+
+    def fitted(self, logs: Floats, weight: Floats) -> "Proposal":
+        """The proposal with the mean and covariance of weighted draws (D, F), drawn towards this one as they are few."""
+        effective = 1 / np.sum(weight**2)
+        share = effective / (effective + len(self.centre))
+        mean = weight @ logs
+        off = logs - mean
+        covariance = (weight[:, None] * off).T @ off
+        return Proposal(
+            share * mean + (1 - share) * self.centre, share * covariance + (1 - share) * self.scale
+        )

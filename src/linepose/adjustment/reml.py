@@ -8,13 +8,13 @@ C the covariance of the measurements under the error process, N the normal equat
 belong to it (Neyman and Scott: without them levels are too small), at the same linearisation as chi squared.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from scipy.optimize import minimize
 
+from linepose.adjustment.gradient import gradient_by_log_levels
 from linepose.adjustment.levels import N_LEVELS, LevelPriors, Levels, levels_from_log, log_from_levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import Pass
@@ -23,7 +23,7 @@ from linepose.adjustment.solve import Model, pass_at
 from linepose.adjustment.state import Knowledge
 from linepose.rotations import Floats
 
-STEP: Final = 1e-5  # of a logarithm, for differences
+LOG_RANGE: Final = (-12.0, 14.0)  # of a level's logarithm
 _WORST: Final = 1e10  # in place of infinity, where the density is zero
 
 
@@ -69,15 +69,27 @@ class Restricted:
         logs = np.where(estimated > 0, self.log_levels(free_logs), 0.0)
         return self.priors.log_density(logs, estimated)
 
-    def gradient(self, free_logs: Floats) -> Floats:
-        """Gradient (F,) of the negative logarithm, by central differences."""
-        out = np.empty(len(free_logs))
-        for i in range(len(free_logs)):
-            ahead, behind = free_logs.copy(), free_logs.copy()
-            ahead[i] += STEP
-            behind[i] -= STEP
-            out[i] = (self.negative_log_density(ahead) - self.negative_log_density(behind)) / (2 * STEP)
-        return out
+    def value_and_gradient(self, free_logs: Floats) -> tuple[float, Floats]:
+        """The negative logarithm of the density at logarithms (F,), and its gradient (F,)."""
+        logs = self.log_levels(free_logs)
+        levels = levels_from_log(logs)
+        process, done = pass_at(self.measurements, self.knowledge, self.model, levels, self.weights)
+        value = self.negative_log_density_of(done, free_logs)
+        if value >= _WORST:
+            return value, np.zeros(len(free_logs))
+        by_logs = 0.5 * gradient_by_log_levels(
+            self.measurements.structure, self.model.image, process, levels, self.weights, done
+        )
+        by_logs[list(self.free)] -= self.priors.gradient(logs)[list(self.free)]
+        return value, by_logs[list(self.free)]
+
+    def hessian(self, free_logs: Floats, step: float) -> Floats:
+        """Hessian (F, F) of the negative logarithm by central differences of its gradient, symmetric."""
+        rows = [
+            (self.value_and_gradient(free_logs + move)[1] - self.value_and_gradient(free_logs - move)[1]) / (2 * step)
+            for move in step * np.eye(len(free_logs))
+        ]
+        return (np.array(rows) + np.array(rows).T) / 2
 
     def start(self, levels: Levels) -> Floats:
         """Logarithms (F,) of the free levels among these."""
@@ -87,23 +99,11 @@ class Restricted:
 def most_likely(restricted: Restricted, start: Floats) -> tuple[Floats, int]:
     """The free levels' logarithms (F,) of largest density near a start (F,), and the number of evaluations."""
     found = minimize(
-        restricted.negative_log_density,
+        restricted.value_and_gradient,
         start,
-        jac=restricted.gradient,
+        jac=True,
         method="L-BFGS-B",
-        bounds=[(-12.0, 14.0)] * len(start),
-        options={"maxiter": 60, "ftol": 1e-9, "gtol": 1e-3},
+        bounds=[LOG_RANGE] * len(start),
+        options={"maxiter": 100, "ftol": 1e-10, "gtol": 1e-3},
     )
     return np.asarray(found.x), int(found.nfev)
-
-
-def hessian(gradient: Callable[[Floats], Floats], at: Floats, step: float = 0.05) -> Floats:
-    """Hessian (F, F) by central differences of a gradient, symmetric."""
-    rows = []
-    for i in range(len(at)):
-        ahead, behind = at.copy(), at.copy()
-        ahead[i] += step
-        behind[i] -= step
-        rows.append((gradient(ahead) - gradient(behind)) / (2 * step))
-    matrix = np.array(rows)
-    return (matrix + matrix.T) / 2

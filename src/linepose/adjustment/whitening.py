@@ -146,3 +146,43 @@ def unwhiten(factor: Factor, whitened: Floats) -> Floats:
             elif factor.begins[line]:
                 adjoint[i] = 0.0
     return dual
+
+
+@kernel
+def unwhiten_columns(factor: Factor, columns: Floats) -> Floats:
+    """W^T times whitened columns (2 L, n); (2 L, n)."""
+    n = columns.shape[1]
+    dual = np.empty(columns.shape)
+    adjoint = np.zeros((N_STATE, n))
+    for line in range(factor.decay.shape[0] - 1, -1, -1):
+        d0, d1 = dual[2 * line], dual[2 * line + 1]
+        w0, w1, gain = columns[2 * line], columns[2 * line + 1], factor.gain[line]
+        for j in range(n):
+            d0[j] = w0[j]
+            d1[j] = w1[j]
+        for i in range(0, N_STATE, 4):
+            x0, x1, x2, x3 = adjoint[i], adjoint[i + 1], adjoint[i + 2], adjoint[i + 3]
+            a0, a1, a2, a3 = gain[i, 0], gain[i + 1, 0], gain[i + 2, 0], gain[i + 3, 0]
+            b0, b1, b2, b3 = gain[i, 1], gain[i + 1, 1], gain[i + 2, 1], gain[i + 3, 1]
+            for j in range(n):
+                d0[j] += a0 * x0[j] + a1 * x1[j] + a2 * x2[j] + a3 * x3[j]
+                d1[j] += b0 * x0[j] + b1 * x1[j] + b2 * x2[j] + b3 * x3[j]
+        i00, l10, i11 = factor.root[line, 0], factor.root[line, 1], factor.root[line, 2]
+        for j in range(n):
+            value = d1[j] * i11
+            d1[j] = value
+            d0[j] = (d0[j] - l10 * value) * i00
+        decay, begins = factor.decay[line], factor.begins[line]
+        for i in range(0, N_STATE, 2):
+            x0, x1 = adjoint[i], adjoint[i + 1]
+            a0, a1 = factor.observe[line, 0, i], factor.observe[line, 0, i + 1]
+            b0, b1 = factor.observe[line, 1, i], factor.observe[line, 1, i + 1]
+            if i >= 6 and begins:
+                x0[:] = 0.0
+                x1[:] = 0.0
+                continue
+            d = decay if i < 6 else 1.0
+            for j in range(n):
+                x0[j] = d * (x0[j] - a0 * d0[j] - b0 * d1[j])
+                x1[j] = d * (x1[j] - a1 * d0[j] - b1 * d1[j])
+    return dual
