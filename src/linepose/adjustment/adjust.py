@@ -21,7 +21,7 @@ from linepose.adjustment.settings import Settings, default_hand_covariance
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, State, state_at
 from linepose.camera import Camera
-from linepose.errors import EstimationError, InputError
+from linepose.errors import InputError
 from linepose.observations import Survey
 from linepose.pose import POSE_COLUMNS, check_pose
 from linepose.rotations import Floats
@@ -188,4 +188,3 @@ def _check_camera(camera: Camera) -> None:
             raise InputError(f"camera.sigmas.{name}", f"{value}", "a positive number", "give how well it is known")
 
 
-__all__ = ["EstimationError", "adjust"]

@@ -9,16 +9,15 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-from scipy.stats import chi2, multivariate_t, norm, qmc
+from scipy.special import logsumexp
 
 from linepose.adjustment.importance import smoothed_weights
 from linepose.adjustment.normal import N_POSE, trailing_inverse
+from linepose.adjustment.proposal import Proposal, split_at_mode
 from linepose.adjustment.reml import Restricted
 from linepose.rotations import Floats
 
-DEGREES_OF_FREEDOM: Final = 5
-FIRST_SHARE: Final = 0.35  # of the draws, from which the proposal is fitted anew
-DIFFERENCE: Final = 0.1  # of a logarithm, for the curvature
+STAGE_SHARES: Final = (0.25, 0.25, 0.5)  # of the draws
 
 
 @dataclass(frozen=True)
@@ -60,19 +59,19 @@ class Mixture:
 def mixture(restricted: Restricted, mode: Floats, stretch: Floats, n_draws: int, seed: int) -> Mixture:
     """The pose's posterior, from the mode of the free levels' logarithms (F,) and the curvature's stretch (6, 6).
 
-    A first share of the draws comes from the curvature at the mode, the rest from a proposal fitted to those; all count
-    as of the mixture of both.
+    The first draws come from the proposal at the mode, later ones from a proposal fitted to all before; each counts as
+    of the mixture of all (deterministic mixture, Owen and Zhou 2000).
     """
-    n_first = int(FIRST_SHARE * n_draws)
-    first = Proposal(mode, proposal_covariance(restricted, mode))
-    drawn = [_components(restricted, first.draw(n_first, seed))]
-    weight, _ = smoothed_weights(-drawn[0].density - first.log_density(drawn[0].logs))
-    second = first.fitted(drawn[0].logs, weight)
-    drawn.append(_components(restricted, second.draw(n_draws - n_first, seed + 1)))
+    stages = [max(int(share * n_draws), 1) for share in STAGE_SHARES]
+    stages[-1] = n_draws - sum(stages[:-1])
+    base = split_at_mode(restricted, mode)
+    proposals, drawn = [base], [_components(restricted, base.draw(stages[0], seed))]
+    for stage, count in enumerate(stages[1:], start=1):
+        weight, _ = _weights(proposals, stages[:stage], drawn)
+        proposals.append(base.fitted(np.concatenate([part.logs for part in drawn]), weight))
+        drawn.append(_components(restricted, proposals[-1].draw(count, seed + stage)))
+    weight, shape = _weights(proposals, stages, drawn)
     logs, density, mean, covariance = (np.concatenate([part[i] for part in drawn]) for i in range(4))
-    shares = np.log([n_first / n_draws, 1 - n_first / n_draws])
-    proposed = np.logaddexp(shares[0] + first.log_density(logs), shares[1] + second.log_density(logs))
-    weight, shape = smoothed_weights(-density - proposed)
     return Mixture(
         weight=weight,
         mean=mean @ stretch.T,
@@ -81,17 +80,6 @@ def mixture(restricted: Restricted, mode: Floats, stretch: Floats, n_draws: int,
         negative_log_density=density,
         pareto_shape=shape,
     )
-
-
-def proposal_covariance(restricted: Restricted, mode: Floats) -> Floats:
-    """Covariance (F, F) of the free levels' logarithms from the curvature at the mode.
-
-    What the data do not curve has at most the prior's sigma: eigenvalues are in units of the prior's precision.
-    """
-    sigma = np.asarray(restricted.priors.log_sigma)[list(restricted.free)]
-    scaled = restricted.hessian(mode, DIFFERENCE) * np.outer(sigma, sigma)
-    values, vectors = np.linalg.eigh(scaled)
-    return (vectors / np.maximum(values, 1.0)) @ vectors.T * np.outer(sigma, sigma)
 
 
 class _Drawn(NamedTuple):
@@ -116,33 +104,9 @@ def _components(restricted: Restricted, logs: Floats) -> _Drawn:
     return _Drawn(logs, density, mean, covariance)
 
 
-@dataclass(frozen=True)
-class Proposal:
-    """A multivariate Student-t of levels' logarithms: centre (F,), scale (F, F)."""
-
-    centre: Floats
-    scale: Floats
-
-    def draw(self, count: int, seed: int) -> Floats:
-        """Draws (count, F) from a scrambled Sobol sequence: evener than chance."""
-        n = len(self.centre)
-        power = int(np.ceil(np.log2(max(count, 2))))
-        uniform = qmc.Sobol(n + 1, rng=np.random.default_rng(seed)).random_base2(power)[:count]
-        uniform = np.clip(uniform, 1e-9, 1 - 1e-9)
-        radius = np.sqrt(DEGREES_OF_FREEDOM / chi2.ppf(uniform[:, -1], DEGREES_OF_FREEDOM))
-        return self.centre + (norm.ppf(uniform[:, :-1]) * radius[:, None]) @ np.linalg.cholesky(self.scale).T
-
-    def log_density(self, logs: Floats) -> Floats:
-        """Logarithm of the density (D,) at logarithms (D, F)."""
-        return np.atleast_1d(multivariate_t(self.centre, self.scale, df=DEGREES_OF_FREEDOM).logpdf(logs))
-
-    def fitted(self, logs: Floats, weight: Floats) -> "Proposal":
-        """The proposal with the mean and covariance of weighted draws (D, F), drawn towards this one as they are few."""
-        effective = 1 / np.sum(weight**2)
-        share = effective / (effective + len(self.centre))
-        mean = weight @ logs
-        off = logs - mean
-        covariance = (weight[:, None] * off).T @ off
-        return Proposal(
-            share * mean + (1 - share) * self.centre, share * covariance + (1 - share) * self.scale
-        )
+def _weights(proposals: list[Proposal], counts: list[int], drawn: list[_Drawn]) -> tuple[Floats, float]:
+    """Weights of all draws against the mixture of their proposals, and the Pareto shape."""
+    logs = np.concatenate([part.logs for part in drawn])
+    shares = np.log(np.array(counts) / sum(counts))
+    proposed = logsumexp([share + one.log_density(logs) for share, one in zip(shares, proposals, strict=True)], axis=0)
+    return smoothed_weights(-np.concatenate([part.density for part in drawn]) - proposed)
