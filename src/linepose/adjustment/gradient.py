@@ -8,7 +8,7 @@ chi^2 needs no derivative of the minimum (envelope theorem). v is one column mor
 dC, which recursions along the lines add up; the trace is the filter's covariance recursion backwards.
 """
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -23,15 +23,26 @@ DRIFT, WHITE, CONSTANT, PIXEL, LATENESS, TIME, ATTITUDE = range(7)
 _N: Final = 7
 
 
+class Slopes(NamedTuple):
+    """Derivatives of a function of C: by the logarithm of each level (7,), of the variance of each view's constant (N,)
+    and of each measurement's noise (L,)."""
+
+    by_level: Floats
+    by_view: Floats
+    by_measurement: Floats
+
+
 @kernel
-def gradient_by_log_levels(
+def slopes_of_density(
     structure: ErrorStructure, image: ErrorImage, process: Components, levels: Levels, weights: Weights, done: Pass
-) -> Floats:
-    """Gradient (7,) of `chi^2 + log|C| + log|N|` by the logarithms of the levels."""
+) -> Slopes:
+    """Derivatives of `chi^2 + log|C| + log|N|`."""
     columns = reduced_columns(done)
     dual = unwhiten_columns(done.factor, columns)
-    return determinant_part(structure, image, process, levels, weights, done.factor) - quadratic_part(
-        structure, image, process, levels, weights, dual
+    one = determinant_part(structure, image, process, levels, weights, done.factor)
+    other = quadratic_part(structure, image, process, levels, weights, dual)
+    return Slopes(
+        one.by_level - other.by_level, one.by_view - other.by_view, one.by_measurement - other.by_measurement
     )
 
 
@@ -78,21 +89,22 @@ def inverse_upper(upper: Floats) -> Floats:
 @kernel
 def quadratic_part(
     structure: ErrorStructure, image: ErrorImage, process: Components, levels: Levels, weights: Weights, dual: Floats
-) -> Floats:
-    """Sum over columns b (2 L,) of `b^T dC b`, dC by the logarithm of each level (7,).
+) -> Slopes:
+    """Sum over columns b (2 L,) of `b^T dC b`.
 
     `s = (J F)^T b` is what a column has in the state's axes; g what decays of it from all lines before, h the same by
     how long ago; primed is the derivative by the logarithm of the attitude's level, which scales a part of F.
     """
     n_lines, n = dual.shape[0] // 2, dual.shape[1]
     total = np.zeros((_N, n))
+    by_view, by_measurement = np.zeros(weights.of_view.shape[0]), np.zeros(n_lines)
     s, t = np.empty(n), np.empty(n)
     g, h, gp = np.zeros((6, n)), np.zeros((6, n)), np.zeros((6, n))
     of_view, of_view_p = np.zeros((6, n)), np.zeros((6, n))
     drift2, white2, late2 = process.drift**2, levels.white**2, levels.lateness**2
     along2 = (levels.pixel * structure.sigma_u_px) ** 2
     drift_sum, time_sum, attitude_sum = total[DRIFT], total[TIME], total[ATTITUDE]
-    white_sum, pixel_sum, late_sum, constant_sum = total[WHITE], total[PIXEL], total[LATENESS], total[CONSTANT]
+    white_sum, pixel_sum, late_sum = total[WHITE], total[PIXEL], total[LATENESS]
     for line in range(n_lines):
         b0, b1 = dual[2 * line], dual[2 * line + 1]
         decay, gap = process.decay[line], structure.gap_s[line] if line else 0.0
@@ -101,7 +113,8 @@ def quadratic_part(
         if structure.begins[line]:
             of_view[:] = 0.0
             of_view_p[:] = 0.0
-        constant2 = process.constant[structure.view_of[line]] ** 2
+        view = structure.view_of[line]
+        constant2 = process.constant[view] ** 2
         for i in range(6):
             u, v = process.by_state[line, 0, i], process.by_state[line, 1, i]
             up, vp = levels.attitude * image.by_attitude[line, 0, i], levels.attitude * image.by_attitude[line, 1, i]
@@ -118,7 +131,6 @@ def quadratic_part(
                 time_sum[j] += 2.0 * drift2 * s[j] * hi[j]
                 white_sum[j] += 2.0 * white * s[j] * s[j]
             for j in range(n):
-                constant_sum[j] += 2.0 * constant2 * s[j] * (s[j] + 2.0 * q[j])
                 attitude_sum[j] += 2.0 * (white + drift2 + constant2) * s[j] * t[j]
             for j in range(n):
                 attitude_sum[j] += 2.0 * drift2 * (t[j] * gi[j] + s[j] * gpi[j])
@@ -128,9 +140,16 @@ def quadratic_part(
                 gpi[j] += t[j]
                 q[j] += s[j]
                 qp[j] += t[j]
+        d0, d1, d2 = process.noise[line, 0], process.noise[line, 1], process.noise[line, 2]
+        for j in range(n):
+            by_measurement[line] += d0 * b0[j] * b0[j] + 2.0 * d1 * b0[j] * b1[j] + d2 * b1[j] * b1[j]
         a = 2.0 * inverse_weight * along2
         uu, uv, vv = image.late[line, 0], image.late[line, 1], image.late[line, 2]
         c = 2.0 * inverse_weight * late2
+        if line == n_lines - 1 or structure.begins[line + 1]:
+            for i in range(6):
+                for j in range(n):
+                    by_view[view] += constant2 * of_view[i, j] ** 2
         for j in range(n):
             pixel_sum[j] += a * b0[j] * b0[j]
             late_sum[j] += c * (uu * b0[j] * b0[j] + 2.0 * uv * b0[j] * b1[j] + vv * b1[j] * b1[j])
@@ -139,14 +158,15 @@ def quadratic_part(
         for j in range(n):
             out[i] += total[i, j]
     out[TIME] /= levels.correlation_time_s
-    return out
+    out[CONSTANT] = 2.0 * np.sum(by_view)
+    return Slopes(out, by_view, by_measurement)
 
 
 @kernel
 def determinant_part(
     structure: ErrorStructure, image: ErrorImage, process: Components, levels: Levels, weights: Weights, factor: Factor
-) -> Floats:
-    """Gradient (7,) of log|C| by the logarithms of the levels: the filter's covariance recursion backwards.
+) -> Slopes:
+    """Derivatives of log|C|: the filter's covariance recursion backwards.
 
     With adjoint Q of the covariance P after a line, `K = P H^T / S` and `Y = Q K`: that of the noise is
     `E = K^T Y + S^-1`, of the observation matrix H `2 (K^T - Y^T P)`, of the covariance before the line
@@ -164,6 +184,7 @@ def determinant_part(
                 row[j] -= a * factor.gain[line, j, 0] + b * factor.gain[line, j, 1]
         after[line + 1] = p
     out = np.zeros(_N)
+    by_view, by_measurement = np.zeros(weights.of_view.shape[0]), np.zeros(n)
     white2, late2 = levels.white**2, levels.lateness**2
     along2 = (levels.pixel * structure.sigma_u_px) ** 2
     q, k, y, by_observe = np.zeros((N_STATE, N_STATE)), np.empty((2, N_STATE)), np.empty((2, N_STATE)), np.empty(N_STATE)
@@ -185,8 +206,11 @@ def determinant_part(
             e10 += k1[i] * y0[i]
             e11 += k1[i] * y1[i]
         inverse_weight = 1.0 / weights.of_measurement[line]
-        constant = process.constant[structure.view_of[line]]
-        covariance = after[line + 1]
+        view = structure.view_of[line]
+        constant, covariance = process.constant[view], after[line + 1]
+        by_measurement[line] = (
+            process.noise[line, 0] * e00 + 2.0 * process.noise[line, 1] * e10 + process.noise[line, 2] * e11
+        )
         for row in range(2):
             yr, kr = y[row], k[row]
             for j in range(N_STATE):
@@ -199,7 +223,7 @@ def determinant_part(
                 unit = process.by_state[line, row, i]
                 other = process.by_state[line, 1 - row, i]
                 out[DRIFT] += by_observe[i] * process.drift * unit
-                out[CONSTANT] += by_observe[6 + i] * constant * unit
+                by_view[view] += 0.5 * by_observe[6 + i] * constant * unit
                 noise = (e00 if row == 0 else e11) * unit + e10 * other
                 out[WHITE] += 2.0 * white2 * inverse_weight * noise * unit
                 by_unit = process.drift * by_observe[i] + constant * by_observe[6 + i]
@@ -233,7 +257,8 @@ def determinant_part(
             q[6:, 6:] = 0.0
         if line:
             out[TIME] += by_decay * decay * structure.gap_s[line] / levels.correlation_time_s
-    return out
+    out[CONSTANT] = 2.0 * np.sum(by_view)
+    return Slopes(out, by_view, by_measurement)
 
 
 @kernel

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from scipy.optimize import minimize
 
-from linepose.adjustment.gradient import gradient_by_log_levels
+from linepose.adjustment.gradient import slopes_of_density
 from linepose.adjustment.levels import N_LEVELS, LevelPriors, Levels, levels_from_log, log_from_levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import Pass
@@ -77,9 +77,8 @@ class Restricted:
         value = self.negative_log_density_of(done, free_logs)
         if value >= _WORST:
             return value, np.zeros(len(free_logs))
-        by_logs = 0.5 * gradient_by_log_levels(
-            self.measurements.structure, self.model.image, process, levels, self.weights, done
-        )
+        slopes = slopes_of_density(self.measurements.structure, self.model.image, process, levels, self.weights, done)
+        by_logs = 0.5 * slopes.by_level
         by_logs[list(self.free)] -= self.priors.gradient(logs)[list(self.free)]
         return value, by_logs[list(self.free)]
 
