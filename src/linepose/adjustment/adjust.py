@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 
 from linepose import rotations
 from linepose.adjustment.curvature import Curvature, curvature
-from linepose.adjustment.estimate import Estimate, estimate, unit_weights
+from linepose.adjustment.estimate import Estimate
 from linepose.adjustment.hand_measured import HandMeasured, hand_measured
+from linepose.adjustment.heavy_tailed import with_tails
 from linepose.adjustment.levels import N_LEVELS
 from linepose.adjustment.measurements import KnownPoints, Measurements, measurements_from_survey
 from linepose.adjustment.normal import N_POSE
@@ -47,21 +48,16 @@ def adjust(
     settings = settings or Settings()
     pose = check_pose(hand_measured_pose, "hand-measured pose")
     _check_camera(camera)
-    hand = hand_measured(pose, np.asarray(default_hand_covariance() if hand_covariance is None else hand_covariance))
+    hand = hand_measured(
+        pose, np.asarray(default_hand_covariance() if hand_covariance is None else hand_covariance, dtype=float)
+    )
     measurements = measurements_from_survey(survey, camera, known_points, settings.line_period_s)
     if measurements.n_views < 2:
         raise InputError("observations", "one observation", "two or more", "add observations of the same pattern")
     knowledge = Knowledge(camera, hand if settings.hand_measured_prior else None)
-    weights = unit_weights(measurements)
-    found = _from_start(measurements, knowledge, pose, weights, settings)
-    return _result(survey, measurements, knowledge, found, weights, settings)
-
-
-def _from_start(
-    measurements: Measurements, knowledge: Knowledge, pose: Floats, weights: Weights, settings: Settings
-) -> Estimate:
-    start = state_at(pose, knowledge.camera, start_points(measurements, knowledge.camera, pose), len(measurements.u_px))
-    return estimate(measurements, knowledge, start, settings.start, weights, settings)
+    start = state_at(pose, camera, start_points(measurements, camera, pose), len(measurements.u_px))
+    found = with_tails(measurements, knowledge, Knowledge(camera, hand), start, settings)
+    return _result(survey, measurements, knowledge, found, settings)
 
 
 def _result(
@@ -69,9 +65,9 @@ def _result(
     measurements: Measurements,
     knowledge: Knowledge,
     found: Estimate,
-    weights: Weights,
     settings: Settings,
 ) -> Adjustment:
+    weights = found.weights
     curved = curvature(measurements, knowledge, found.solution, found.levels, weights)
     spread = mixture(found.restricted, found.log_levels, curved.stretch, settings.n_draws, settings.seed)
     state = found.solution.state
@@ -186,5 +182,3 @@ def _check_camera(camera: Camera) -> None:
     for name, value in sigmas.items():
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"camera.sigmas.{name}", f"{value}", "a positive number", "give how well it is known")
-
-

@@ -78,9 +78,7 @@ def _score(
     """Gradient (6,) of psi at a step (6,) of the pose from the solution, by that step."""
     full = np.concatenate([_response(solution.done, step), step])
     state: State = solution.state.moved(full, solution.state.correction)
-    near = solve(
-        measurements, knowledge, state, levels, weights, tolerance=_TOLERANCE, max_steps=12, pose_held=True
-    )
+    near = solve(measurements, knowledge, state, levels, weights, tolerance=_TOLERANCE, max_steps=12, pose_held=True)
     gradient = pose_gradient(near.done)
     gradient[3:] = rotations.small_rotation_by_rotation_vector(step[3:]).T @ gradient[3:]
     return gradient

@@ -20,12 +20,18 @@ _OF_DRIFT: Final = ("drift", "correlation_time_s")
 
 @dataclass(frozen=True)
 class Estimate:
-    """Solution at the most likely levels; log_levels (F,): of those that are free; restricted: their density there."""
+    """Solution at the most likely levels.
+
+    log_levels (F,): of those that are free; restricted: their density there; weights: of the tails; log_evidence: the
+    density at the levels, for weights with what they add to it.
+    """
 
     solution: Solution
     levels: Levels
     log_levels: Floats
     restricted: Restricted
+    weights: Weights
+    log_evidence: float
     n_rounds: int
     n_passes: int
     converged: bool
@@ -69,4 +75,7 @@ def estimate(
         logs = restricted.log_levels(after)
         levels, state = levels_from_log(logs), solution.state
         settled = bool(np.max(np.abs(after - before)) < LEVEL_TOLERANCE)
-    return Estimate(solution, levels, before, restricted, rounds, passes, settled and solution.converged)
+    evidence = -restricted.negative_log_density(before)
+    return Estimate(
+        solution, levels, before, restricted, weights, evidence, rounds, passes, settled and solution.converged
+    )

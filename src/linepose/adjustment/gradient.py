@@ -41,9 +41,7 @@ def slopes_of_density(
     dual = unwhiten_columns(done.factor, columns)
     one = determinant_part(structure, image, process, levels, weights, done.factor)
     other = quadratic_part(structure, image, process, levels, weights, dual)
-    return Slopes(
-        one.by_level - other.by_level, one.by_view - other.by_view, one.by_measurement - other.by_measurement
-    )
+    return Slopes(one.by_level - other.by_level, one.by_view - other.by_view, one.by_measurement - other.by_measurement)
 
 
 @kernel
@@ -187,7 +185,12 @@ def determinant_part(
     by_view, by_measurement = np.zeros(weights.of_view.shape[0]), np.zeros(n)
     white2, late2 = levels.white**2, levels.lateness**2
     along2 = (levels.pixel * structure.sigma_u_px) ** 2
-    q, k, y, by_observe = np.zeros((N_STATE, N_STATE)), np.empty((2, N_STATE)), np.empty((2, N_STATE)), np.empty(N_STATE)
+    q, k, y, by_observe = (
+        np.zeros((N_STATE, N_STATE)),
+        np.empty((2, N_STATE)),
+        np.empty((2, N_STATE)),
+        np.empty(N_STATE),
+    )
     for line in range(n - 1, -1, -1):
         i00, l10, i11 = factor.root[line, 0], factor.root[line, 1], factor.root[line, 2]
         k0, k1, y0, y1 = k[0], k[1], y[0], y[1]
@@ -278,5 +281,3 @@ def predict(p: Floats, decay: float, begins: bool) -> None:
             p[i, j] *= decay
             p[j, i] *= decay
         p[i, i] += 1.0 - decay2
-
-

@@ -102,9 +102,17 @@ def linearise(
         by_y = f / depth
         for row in range(2):
             if row == 0:
-                g0, g1, g2 = by_x * (c[0, 0] - x * c[0, 2]), by_x * (c[1, 0] - x * c[1, 2]), by_x * (c[2, 0] - x * c[2, 2])
+                g0, g1, g2 = (
+                    by_x * (c[0, 0] - x * c[0, 2]),
+                    by_x * (c[1, 0] - x * c[1, 2]),
+                    by_x * (c[2, 0] - x * c[2, 2]),
+                )
             else:
-                g0, g1, g2 = by_y * (c[0, 1] - y * c[0, 2]), by_y * (c[1, 1] - y * c[1, 2]), by_y * (c[2, 1] - y * c[2, 2])
+                g0, g1, g2 = (
+                    by_y * (c[0, 1] - y * c[0, 2]),
+                    by_y * (c[1, 1] - y * c[1, 2]),
+                    by_y * (c[2, 1] - y * c[2, 2]),
+                )
             theta = out.by_theta[line, row]
             theta[0], theta[1], theta[2] = -g0, -g1, -g2
             theta[3], theta[4], theta[5] = g1 * b2 - g2 * b1, g2 * b0 - g0 * b2, g0 * b1 - g1 * b0
