@@ -17,7 +17,7 @@ from linepose.adjustment.normal import N_POSE
 from linepose.adjustment.posterior import Mixture, mixture
 from linepose.adjustment.process import Weights
 from linepose.adjustment.residuals import normalised_residuals
-from linepose.adjustment.result import Adjustment, Diagnostics, gridded, warnings_of, weighted_quantiles
+from linepose.adjustment.result import Adjustment, Diagnostics, Quality, gridded, warnings_of, weighted_quantiles
 from linepose.adjustment.settings import Settings, default_hand_covariance
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, State, state_at
@@ -71,7 +71,7 @@ def _result(
     curved = curvature(measurements, knowledge, found.solution, found.levels, weights)
     spread = mixture(found.restricted, found.log_levels, curved.stretch, settings.n_draws, settings.seed)
     state = found.solution.state
-    mean, step_covariance = spread.moments()
+    _, step_covariance = spread.moments()
     by_parameters = np.eye(N_POSE)
     by_parameters[3:, 3:] = np.linalg.inv(rotations.small_rotation_by_rotation_vector(state.pose[3:]))
     grid = measurements.row, measurements.column, survey.u_px.shape
@@ -137,26 +137,27 @@ def _diagnostics(
     covariance: Floats,
     weights: Weights,
 ) -> Diagnostics:
-    disagreement, open_directions = np.full(N_POSE, np.nan), ()
+    disagreement = np.full(N_POSE, np.nan)
+    open_directions: tuple[str, ...] = ()
     if knowledge.hand is not None:
         disagreement, open_directions = _beside_hand(knowledge.hand, found.solution.state, covariance)
-    said = {
-        "converged": found.converged,
-        "least_eigenvalue": curved.least_eigenvalue,
-        "effective_draws": spread.effective_size,
-        "pareto_shape": spread.pareto_shape,
-        "disagreement_sigmas": disagreement,
-        "open_directions": open_directions,
-        "drift_known": measurements.timed,
-    }
+    quality = Quality(
+        converged=found.converged,
+        least_eigenvalue=curved.least_eigenvalue,
+        effective_draws=spread.effective_size,
+        pareto_shape=spread.pareto_shape,
+        disagreement_sigmas=disagreement,
+        open_directions=open_directions,
+        drift_known=measurements.timed,
+    )
     return Diagnostics(
+        **vars(quality),
         n_rounds=found.n_rounds,
         n_passes=found.n_passes,
         chi_squared=found.solution.done.chi_squared,
         degrees_of_freedom=2 * len(measurements.u_px) - 3 * measurements.n_points - N_POSE,
         heavy_tails=bool(np.any(weights.of_view != 1) or np.any(weights.of_measurement != 1)),
-        warnings=warnings_of(**said),
-        **said,
+        warnings=warnings_of(quality),
     )
 
 

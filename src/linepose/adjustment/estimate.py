@@ -14,7 +14,9 @@ from linepose.adjustment.solve import Solution, solve
 from linepose.adjustment.state import Knowledge, State
 from linepose.rotations import Floats
 
-LEVEL_TOLERANCE: Final = 5e-3  # of a logarithm, in one round
+LEVEL_TOLERANCE: Final = 0.02  # of a logarithm, in one round
+_SLOPES: Final = (0.2, 0.01)  # of the levels' density where their search ends, in the first round and later
+_TIGHT, _LOOSE = 1e-9, 1e-4  # of chi squared, at the end and while levels move
 _OF_DRIFT: Final = ("drift", "correlation_time_s")
 
 
@@ -65,12 +67,14 @@ def estimate(
         levels = levels_from_log(logs)
     state, passes, settled, rounds = start, 0, False, 0
     while True:
-        solution = solve(measurements, knowledge, state, levels, weights, damping=damping)
-        restricted = Restricted(measurements, knowledge, solution.model, weights, settings.priors, free, logs)
+        ends = settled or rounds >= settings.max_rounds
+        tolerance = _TIGHT if ends else _LOOSE
+        solution = solve(measurements, knowledge, state, levels, weights, damping=damping, tolerance=tolerance)
+        restricted = Restricted(measurements, solution.model, weights, settings.priors, free, logs)
         before = restricted.start(levels)
-        if settled or rounds >= settings.max_rounds:
+        if ends:
             break
-        after, count = most_likely(restricted, before)
+        after, count = most_likely(restricted, before, _SLOPES[min(rounds, 1)])
         rounds, passes = rounds + 1, passes + count
         logs = restricted.log_levels(after)
         levels, state = levels_from_log(logs), solution.state

@@ -24,8 +24,9 @@ _N: Final = 7
 
 
 class Slopes(NamedTuple):
-    """Derivatives of a function of C: by the logarithm of each level (7,), of the variance of each view's constant (N,)
-    and of each measurement's noise (L,)."""
+    """Derivatives of a function of C: by logarithms of every level (7,), of every view's variance of the constant (N,),
+    of every measurement's variance of the noise (L,).
+    """
 
     by_level: Floats
     by_view: Floats

@@ -8,19 +8,20 @@ import numpy as np
 from linepose.adjustment.estimate import Estimate, estimate, free_levels, unit_weights
 from linepose.adjustment.levels import Levels, levels_from_log, log_from_levels
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.process import Weights
 from linepose.adjustment.reml import Restricted, most_likely
 from linepose.adjustment.settings import Settings
 from linepose.adjustment.solve import solve
 from linepose.adjustment.state import Knowledge, State
-from linepose.adjustment.tails import bound_of_weights, expected_squares, expected_weights
+from linepose.adjustment.tails import TailWeights, bound_of_weights, expected_weights, unit_tail_weights
 from linepose.errors import EstimationError
 
 SCREEN_NATS: Final = 10.0  # by which heavy tails may look worse at the normal model's estimate and are yet tried
 _WEIGHT_TOLERANCE: Final = 0.03  # of a logarithm
 _LEVEL_TOLERANCE: Final = 0.02  # of a logarithm
 _SWEEPS: Final = 6  # of weights at fixed levels
-_ROUNDS: Final = 10
+_SCREEN_SWEEPS: Final = 3
+_ROUNDS: Final = 20
+_SLOPE: Final = 0.03  # of the levels' density by their logarithms
 _LOOSE: Final = 1e-3  # of chi squared, while weights move
 
 
@@ -46,8 +47,11 @@ def with_tails(
             raise failure or EstimationError("adjustment: no estimate")
         return normal
     try:
-        first = _heavy_tailed(measurements, guided, start, settings.start, unit_weights(measurements), settings)
-        heavy = _heavy_tailed(measurements, knowledge, first.solution.state, first.levels, first.weights, settings)
+        tails = unit_tail_weights(measurements)
+        first, tails = _heavy_tailed(measurements, guided, start, settings.start, tails, settings)
+        heavy = first
+        if knowledge.hand is not guided.hand:
+            heavy, _ = _heavy_tailed(measurements, knowledge, first.solution.state, first.levels, tails, settings)
     except EstimationError as error:
         if normal is None:
             raise failure or error from error
@@ -57,13 +61,13 @@ def with_tails(
 
 def _hopeless(normal: Estimate) -> bool:
     """Whether heavy tails are so much worse at the normal model's estimate that they need not be tried."""
-    weights, restricted = normal.weights, normal.restricted
-    levels, measurements = normal.levels, restricted.measurements
-    for _ in range(3):
-        squares = expected_squares(measurements, restricted.knowledge, normal.solution.model, levels, weights)
-        weights = expected_weights(squares)
-    density = replace(restricted, weights=weights).negative_log_density(normal.log_levels)
-    return bool(bound_of_weights(weights) - density < normal.log_evidence - SCREEN_NATS)
+    restricted = normal.restricted
+    measurements = restricted.measurements
+    tails = unit_tail_weights(measurements)
+    for _ in range(_SCREEN_SWEEPS):
+        tails = expected_weights(measurements, normal.solution.model, normal.levels, tails)
+    density = replace(restricted, weights=tails.applied(measurements)).negative_log_density(normal.log_levels)
+    return bool(bound_of_weights(measurements, tails) - density < normal.log_evidence - SCREEN_NATS)
 
 
 def _heavy_tailed(
@@ -71,47 +75,44 @@ def _heavy_tailed(
     knowledge: Knowledge,
     state: State,
     levels: Levels,
-    weights: Weights,
+    tails: TailWeights,
     settings: Settings,
-) -> Estimate:
+) -> tuple[Estimate, TailWeights]:
     """Weights, solution and levels in turn; the evidence is the lower bound."""
     free, logs = free_levels(measurements), log_from_levels(levels)
     if not measurements.timed:
         logs[0] = -np.inf
         levels = levels_from_log(logs)
-    passes, settled = 0, False
-    for rounds in range(1, _ROUNDS + 1):
-        moved = np.inf
+    passes, rounds, settled = 0, 0, False
+    while True:
+        rounds += 1
         for _ in range(_SWEEPS):
-            solution = solve(measurements, knowledge, state, levels, weights, tolerance=_LOOSE)
-            state = solution.state
-            after = expected_weights(expected_squares(measurements, knowledge, solution.model, levels, weights))
-            moved = _change(after, weights)
-            weights = after
+            solution = solve(measurements, knowledge, state, levels, tails.applied(measurements), tolerance=_LOOSE)
+            state, before = solution.state, tails
+            tails = expected_weights(measurements, solution.model, levels, before)
+            moved = _change(tails, before)
             if moved < _WEIGHT_TOLERANCE:
                 break
-        restricted = Restricted(measurements, knowledge, solution.model, weights, settings.priors, free, logs)
-        before = restricted.start(levels)
-        log_levels, count = most_likely(restricted, before)
+        weights = tails.applied(measurements)
+        restricted = Restricted(measurements, solution.model, weights, settings.priors, free, logs)
+        start = restricted.start(levels)
+        log_levels, count = most_likely(restricted, start, _SLOPE)
         passes += count
         logs = restricted.log_levels(log_levels)
         levels = levels_from_log(logs)
-        settled = bool(np.max(np.abs(log_levels - before)) < _LEVEL_TOLERANCE and moved < _WEIGHT_TOLERANCE)
-        if settled:
+        settled = bool(np.max(np.abs(log_levels - start)) < _LEVEL_TOLERANCE and moved < _WEIGHT_TOLERANCE)
+        if settled or rounds >= _ROUNDS:
             break
     solution = solve(measurements, knowledge, state, levels, weights)
-    restricted = Restricted(measurements, knowledge, solution.model, weights, settings.priors, free, logs)
-    evidence = bound_of_weights(weights) - restricted.negative_log_density(log_levels)
-    return Estimate(
+    restricted = Restricted(measurements, solution.model, weights, settings.priors, free, logs)
+    evidence = bound_of_weights(measurements, tails) - restricted.negative_log_density(log_levels)
+    found = Estimate(
         solution, levels, log_levels, restricted, weights, evidence, rounds, passes, settled and solution.converged
     )
+    return found, tails
 
 
-def _change(after: Weights, before: Weights) -> float:
+def _change(after: TailWeights, before: TailWeights) -> float:
     """The largest change of a weight's logarithm."""
-    return float(
-        max(
-            np.max(np.abs(np.log(after.of_view / before.of_view))),
-            np.max(np.abs(np.log(after.of_measurement / before.of_measurement))),
-        )
-    )
+    pairs = ((after.constant, before.constant), (after.noise, before.noise), (after.single, before.single))
+    return float(max(np.max(np.abs(np.log(one / other))) for one, other in pairs))

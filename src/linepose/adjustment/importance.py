@@ -13,7 +13,7 @@ _PRIOR_SHAPE, _PRIOR_COUNT = 0.5, 10.0  # a weak prior of the shape, for short t
 
 
 def smoothed_weights(log_ratios: Floats) -> tuple[Floats, float]:
-    """Weights (S,) that sum to one from the logarithms (S,) of target over proposal, and the Pareto shape of their tail.
+    """Weights (S,) that sum to one from logarithms (S,) of target over proposal, and the shape of their tail.
 
     The largest `min(S/5, 3 sqrt S)` ratios are replaced by the quantiles of the generalised Pareto distribution that
     fits them.

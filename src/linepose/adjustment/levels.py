@@ -31,14 +31,16 @@ class Levels(NamedTuple):
 LEVEL_NAMES: Final = Levels._fields
 N_LEVELS: Final = len(LEVEL_NAMES)
 START: Final = Levels(0.5, 0.5, 0.5, 0.5, 0.5, 60.0, 1.0)
+MEDIAN: Final = Levels(0.5, 0.5, 0.5, 0.5, 0.5, 300.0, 1.0)
+LOG_SIGMA: Final = Levels(1.5, 1.5, 1.5, 1.5, 0.7, 2.0, 0.5)
 
 
 @dataclass(frozen=True)
 class LevelPriors:
     """Log-normal prior of every level: its median, and its sigma in the natural logarithm."""
 
-    median: Levels = Levels(0.5, 0.5, 0.5, 0.5, 0.5, 300.0, 1.0)
-    log_sigma: Levels = Levels(1.5, 1.5, 1.5, 1.5, 0.7, 2.0, 0.5)
+    median: Levels = MEDIAN
+    log_sigma: Levels = LOG_SIGMA
 
     def log_density(self, log_levels: Floats, estimated: Floats) -> float:
         """Logarithm of the density of the logarithms of the levels (7,), but for a constant; those `estimated` count.

@@ -92,7 +92,7 @@ def measurements_from_survey(
     gap_s = np.diff(time_us.astype(float), prepend=-np.inf) * 1e-6
     points, point = np.unique(column, return_inverse=True)
     structure = ErrorStructure(
-        root=np.stack([symmetric_root(c, int(survey.number[r])) for c, r in zip(covariance, row, strict=True)]),
+        root=symmetric_roots(covariance, survey.number[row]),
         motion=motion,
         late_px=late_px,
         gap_s=gap_s,
@@ -115,25 +115,28 @@ def measurements_from_survey(
     )
 
 
-def symmetric_root(covariance: Floats, number: int) -> Floats:
-    """S R^1/2 (6, 6) of a covariance, S its sigmas and R^1/2 the symmetric root of its correlations.
+def symmetric_roots(covariances: Floats, numbers: NDArray[np.int64]) -> Floats:
+    """S R^1/2 (L, 6, 6) of covariances, S the sigmas of each and R^1/2 the symmetric root of its correlations.
 
     The symmetric root is continuous in the covariance, so that one process can run through all of them. A singular or
-    zero covariance is allowed; raises InputError that names the observation for one with negative eigenvalues.
+    zero covariance is allowed; raises InputError that names the observation (L,) of one with negative eigenvalues.
     """
-    variance = np.diagonal(covariance)
+    variance = np.diagonal(covariances, axis1=1, axis2=2)
     sigma = np.sqrt(np.maximum(variance, 0.0))
     safe = np.where(sigma > 0, sigma, 1.0)
-    scaled = covariance / safe / safe[:, None]
-    values, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
-    if np.any(variance < 0) or values[0] < -NEGATIVE_EIGENVALUE * max(values[-1], 1.0):
+    scaled = covariances / safe[:, None, :] / safe[:, :, None]
+    values, vectors = np.linalg.eigh((scaled + np.swapaxes(scaled, 1, 2)) / 2)
+    negative = np.any(variance < 0, axis=1) | (values[:, 0] < -NEGATIVE_EIGENVALUE * np.maximum(values[:, -1], 1.0))
+    if np.any(negative):
+        first = int(np.argmax(negative))
         raise InputError(
-            f"observation {number}",
-            f"a covariance with variances {variance.tolist()} that is not positive semidefinite",
+            f"observation {numbers[first]}",
+            f"a covariance with variances {variance[first].tolist()} that is not positive semidefinite",
             "a symmetric matrix without negative eigenvalues",
             "check which columns of the navigation record are read",
         )
-    return sigma[:, None] * ((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
+    roots = (vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ np.swapaxes(vectors, 1, 2)
+    return np.ascontiguousarray(sigma[:, :, None] * roots)
 
 
 def _in_order_of_time(

@@ -16,6 +16,8 @@ _LONGEST_GAP_US: Final = 200_000.0  # between two measurements whose difference 
 _SHORTEST_PERIOD_US: Final = 100.0
 _COHERENCE: Final = 0.9  # of the differences with multiples of a period, 1 is perfect
 _FEWEST_DIFFERENCES: Final = 20
+_MOST_DIFFERENCES: Final = 500
+_TRIED: Final = 1500
 
 
 def body_rates(body_pose: Floats, time_us: NDArray[np.int64], view: NDArray[np.int64]) -> Floats:
@@ -36,19 +38,20 @@ def body_rates(body_pose: Floats, time_us: NDArray[np.int64], view: NDArray[np.i
 def line_period_s(time_us: NDArray[np.int64], view: NDArray[np.int64]) -> float | None:
     """Duration of a line (s), the longest of which differences of time within views are multiples; None if of none."""
     differences = np.concatenate([_differences(np.sort(time_us[view == one])) for one in np.unique(view)])
+    differences = differences[:: max(1, len(differences) // _MOST_DIFFERENCES)]
     if len(differences) < _FEWEST_DIFFERENCES:
         return None
-    longest = float(np.quantile(differences, 0.25)) * 4
-    best: float | None = None
-    for period in np.geomspace(longest, _SHORTEST_PERIOD_US, 4000):
-        if abs(np.mean(np.exp(2j * np.pi * differences / period)).real) > _COHERENCE:
-            best = period
-            break
-    if best is None:
+    periods = np.geomspace(4 * float(np.quantile(differences, 0.25)), _SHORTEST_PERIOD_US, _TRIED)
+    good = np.flatnonzero(_coherence(differences, periods) > _COHERENCE)
+    if len(good) == 0:
         return None
-    near = best * np.linspace(0.97, 1.0, 301)
-    coherence = [np.mean(np.exp(2j * np.pi * differences / period)).real for period in near]
-    return float(near[int(np.argmax(coherence))]) * 1e-6
+    near = periods[good[0]] * np.linspace(0.97, 1.0, 301)
+    return float(near[int(np.argmax(_coherence(differences, near)))]) * 1e-6
+
+
+def _coherence(differences: Floats, periods: Floats) -> Floats:
+    """How near differences (D,) are to multiples of periods (P,), 1 if they all are; (P,)."""
+    return np.cos(2 * np.pi * differences / periods[:, None]).mean(axis=1)
 
 
 def _differences(ascending_us: NDArray[np.int64]) -> Floats:
@@ -69,6 +72,6 @@ def lateness_of_views(
     """
     period = period_s if period_s is not None else line_period_s(time_us, view)
     rates = body_rates(body_pose, time_us, view)
-    known = np.isfinite(rates).all(axis=1) & (period is not None)
+    known = np.isfinite(rates).all(axis=1) if period is not None else np.zeros(len(rates), dtype=bool)
     motion = np.where(known[:, None], rates * (period or 0.0), 0.0)
     return motion, np.where(known, 0.0, 2.0 * sigma_v_px)

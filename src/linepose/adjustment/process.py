@@ -70,7 +70,7 @@ class Components(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """Weights of the tails: of the constant of each view (N,) and of the noise of each measurement (L,); one is none."""
+    """Weights of the constant of each view (N,) and of the noise of each measurement (L,), one where nothing is wrong."""
 
     of_view: Floats
     of_measurement: Floats

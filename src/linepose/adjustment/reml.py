@@ -20,7 +20,6 @@ from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import Pass
 from linepose.adjustment.process import Weights
 from linepose.adjustment.solve import Model, pass_at
-from linepose.adjustment.state import Knowledge
 from linepose.rotations import Floats
 
 LOG_RANGE: Final = (-12.0, 14.0)  # of a level's logarithm
@@ -35,7 +34,6 @@ class Restricted:
     """
 
     measurements: Measurements
-    knowledge: Knowledge
     model: Model
     weights: Weights
     priors: LevelPriors
@@ -51,7 +49,7 @@ class Restricted:
     def done(self, free_logs: Floats) -> Pass:
         """The pass at these levels (F,)."""
         levels = levels_from_log(self.log_levels(free_logs))
-        return pass_at(self.measurements, self.knowledge, self.model, levels, self.weights)[1]
+        return pass_at(self.measurements, self.model, levels, self.weights)[1]
 
     def negative_log_density(self, free_logs: Floats) -> float:
         """The negative logarithm of the density of the logarithms of free levels (F,), but for a constant."""
@@ -73,7 +71,7 @@ class Restricted:
         """The negative logarithm of the density at logarithms (F,), and its gradient (F,)."""
         logs = self.log_levels(free_logs)
         levels = levels_from_log(logs)
-        process, done = pass_at(self.measurements, self.knowledge, self.model, levels, self.weights)
+        process, done = pass_at(self.measurements, self.model, levels, self.weights)
         value = self.negative_log_density_of(done, free_logs)
         if value >= _WORST:
             return value, np.zeros(len(free_logs))
@@ -95,14 +93,17 @@ class Restricted:
         return log_from_levels(levels)[list(self.free)]
 
 
-def most_likely(restricted: Restricted, start: Floats) -> tuple[Floats, int]:
-    """The free levels' logarithms (F,) of largest density near a start (F,), and the number of evaluations."""
+def most_likely(restricted: Restricted, start: Floats, slope: float = 1e-3) -> tuple[Floats, int]:
+    """The free levels' logarithms (F,) of largest density near a start (F,), and the number of evaluations.
+
+    It ends where no derivative is larger than `slope`.
+    """
     found = minimize(
         restricted.value_and_gradient,
         start,
         jac=True,
         method="L-BFGS-B",
         bounds=[LOG_RANGE] * len(start),
-        options={"maxiter": 100, "ftol": 1e-10, "gtol": 1e-3},
+        options={"maxiter": 100, "ftol": 1e-10, "gtol": slope},
     )
     return np.asarray(found.x), int(found.nfev)

@@ -17,28 +17,36 @@ DISAGREEMENT_SIGMAS: Final = 3.0
 
 
 @dataclass(frozen=True)
-class Diagnostics:
-    """Whether the result can be trusted.
+class Quality:
+    """What tells whether the result can be trusted.
 
-    converged: chi squared and levels; n_rounds of both in turn; n_passes: evaluations of the levels' density;
-    chi_squared and degrees_of_freedom of the measurements; least_eigenvalue: of the curvature in units of the normal
-    equations, NaN where it could not be had; effective_draws, pareto_shape: of the draws of the levels;
-    disagreement_sigmas (6,): of the hand measurement from what the data alone say, NaN without one; open_directions:
-    names of the pose's parameters that the data leave to the hand measurement; drift_known: whether there are times;
-    heavy_tails: whether weights were needed; warnings: one line each.
+    converged: chi squared and levels; least_eigenvalue: of the curvature in units of the normal equations, NaN where it
+    could not be had; effective_draws, pareto_shape: of the draws of the levels; disagreement_sigmas (6,): of the hand
+    measurement from what the data alone say, NaN without one; open_directions: names of the pose's parameters that the
+    data leave to the hand measurement; drift_known: whether there are times.
     """
 
     converged: bool
-    n_rounds: int
-    n_passes: int
-    chi_squared: float
-    degrees_of_freedom: int
     least_eigenvalue: float
     effective_draws: float
     pareto_shape: float
     disagreement_sigmas: Floats
     open_directions: tuple[str, ...]
     drift_known: bool
+
+
+@dataclass(frozen=True)
+class Diagnostics(Quality):
+    """Whether the result can be trusted, and what it took.
+
+    n_rounds: of chi squared and levels in turn; n_passes: evaluations of the levels' density; chi_squared and
+    degrees_of_freedom of the measurements; heavy_tails: whether the data asked for weights; warnings: one line each.
+    """
+
+    n_rounds: int
+    n_passes: int
+    chi_squared: float
+    degrees_of_freedom: int
     heavy_tails: bool
     warnings: tuple[str, ...]
 
@@ -93,37 +101,28 @@ def weighted_quantiles(values: Floats, weight: Floats, shares: tuple[float, ...]
     return np.interp(shares, cumulated, values[order])
 
 
-def warnings_of(
-    *,
-    converged: bool,
-    least_eigenvalue: float,
-    effective_draws: float,
-    pareto_shape: float,
-    disagreement_sigmas: Floats,
-    open_directions: tuple[str, ...],
-    drift_known: bool,
-) -> tuple[str, ...]:
+def warnings_of(quality: Quality) -> tuple[str, ...]:
     """What a user should be told, one line each."""
     said = []
-    if not converged:
+    if not quality.converged:
         said.append("the adjustment has not converged: start from a pose nearer to the camera's")
-    if not least_eigenvalue >= TRUSTED_EIGENVALUE:
+    if not quality.least_eigenvalue >= TRUSTED_EIGENVALUE:
         said.append(
-            f"chi squared curves only {least_eigenvalue:.2f} of what the normal equations say in one direction, "
+            f"chi squared curves only {quality.least_eigenvalue:.2f} of what the normal equations say in one direction, "
             f"expected {TRUSTED_EIGENVALUE} or more: do not trust the sigmas; add observations"
         )
-    if pareto_shape > TRUSTED_SHAPE or effective_draws < FEWEST_EFFECTIVE_DRAWS:
+    if quality.pareto_shape > TRUSTED_SHAPE or quality.effective_draws < FEWEST_EFFECTIVE_DRAWS:
         said.append(
-            f"draws of the levels are worth {effective_draws:.0f} (Pareto shape {pareto_shape:.2f}), expected "
+            f"draws of the levels are worth {quality.effective_draws:.0f} (Pareto shape {quality.pareto_shape:.2f}), expected "
             f"{FEWEST_EFFECTIVE_DRAWS:.0f} or more (below {TRUSTED_SHAPE}): raise n_draws"
         )
-    if np.any(np.abs(disagreement_sigmas) > DISAGREEMENT_SIGMAS):
+    if np.any(np.abs(quality.disagreement_sigmas) > DISAGREEMENT_SIGMAS):
         said.append(
-            f"data and hand measurement disagree by {np.nanmax(np.abs(disagreement_sigmas)):.1f} sigmas: "
+            f"data and hand measurement disagree by {np.nanmax(np.abs(quality.disagreement_sigmas)):.1f} sigmas: "
             "check the hand measurement and its sigmas"
         )
-    if open_directions:
-        said.append(f"the data leave {', '.join(open_directions)} to the hand measurement: add other motions")
-    if not drift_known:
+    if quality.open_directions:
+        said.append(f"the data leave {', '.join(quality.open_directions)} to the hand measurement: add other motions")
+    if not quality.drift_known:
         said.append("without times drift of the navigation is not known and not allowed for")
     return tuple(said)

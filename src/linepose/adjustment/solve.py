@@ -16,7 +16,7 @@ import numpy as np
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import Linearised, empty_linearised, linearise
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import N_POSE, Pass, design, one_pass, solve_step, whitened_residual
+from linepose.adjustment.normal import N_POSE, Pass, Prior, design, one_pass, solve_step, whitened_residual
 from linepose.adjustment.process import Components, ErrorImage, Weights, components, corrections, error_image
 from linepose.adjustment.state import Knowledge, State
 from linepose.adjustment.whitening import unwhiten
@@ -26,17 +26,22 @@ from linepose.rotations import Floats
 _LARGEST_DAMPING: Final = 1e8
 _LARGEST_TURN_RAD: Final = 0.3
 _LARGEST_SHIFT_M: Final = 1.0
-_LARGEST_FOCAL_SHARE: Final = 0.1
+_FREE_STEPS: Final = 2  # in which chi squared may rise, as the first corrections bend the linear model
+_ALLOWED_RISE: Final = 0.1
 
 
 @dataclass(frozen=True)
 class Model:
-    """The linear model at a state: what a pass needs at any levels; image: of unit errors, rows (2 L, n): all columns."""
+    """The linear model at a state: what a pass needs at any levels.
+
+    image: of unit errors; rows (2 L, n): all columns; prior: about the state.
+    """
 
     state: State
     linearised: Linearised
     image: ErrorImage
     rows: Floats
+    prior: Prior
 
 
 @dataclass(frozen=True)
@@ -76,17 +81,15 @@ def model_at(measurements: Measurements, knowledge: Knowledge, state: State) -> 
     if behind:
         return None
     rows = design(linearised, state.correction, measurements.point, measurements.n_points)
-    return Model(state, linearised, error_image(measurements.structure, linearised), rows)
+    image = error_image(measurements.structure, linearised)
+    return Model(state, linearised, image, rows, knowledge.prior(state, measurements))
 
 
-def pass_at(
-    measurements: Measurements, knowledge: Knowledge, model: Model, levels: Levels, weights: Weights
-) -> tuple[Components, Pass]:
+def pass_at(measurements: Measurements, model: Model, levels: Levels, weights: Weights) -> tuple[Components, Pass]:
     """The error process at these levels, and one pass of the linear model with it."""
     structure = measurements.structure
     process = components(structure, model.image, levels, weights)
-    prior = knowledge.prior(model.state, measurements)
-    return process, one_pass(model.rows, process, structure.view_of, structure.begins, prior)
+    return process, one_pass(model.rows, process, structure.view_of, structure.begins, model.prior)
 
 
 def solve(
@@ -112,7 +115,7 @@ def solve(
         raise EstimationError(
             "adjustment: a point lies behind the camera at the start; start from a pose nearer to the camera's"
         )
-    process, done = pass_at(measurements, knowledge, model, levels, weights)
+    process, done = pass_at(measurements, model, levels, weights)
     floor, steps, converged = damping, 0, False
     structure = measurements.structure
     while True:
@@ -130,9 +133,9 @@ def solve(
         trial = model_at(measurements, knowledge, model.state.moved(_held(step), correction))
         steps += 1
         if trial is not None:
-            trial_process, trial_done = pass_at(measurements, knowledge, trial, levels, weights)
+            trial_process, trial_done = pass_at(measurements, trial, levels, weights)
             change = trial_done.chi_squared_before - done.chi_squared_before
-            if change <= max(0.1 * done.chi_squared_before, 10.0) if steps <= 2 else change <= _slack(done, tolerance):
+            if change <= max(tolerance, _ALLOWED_RISE * done.chi_squared_before if steps <= _FREE_STEPS else 0.0):
                 converged = gain < tolerance and abs(change) < tolerance
                 model, process, done = trial, trial_process, trial_done
                 damping = max(floor, damping / 10) if damping > 1e-7 else 0.0
@@ -141,10 +144,6 @@ def solve(
             break
         damping = max(10 * damping, 1e-3)
     return Solution(model, process, done, dual, z, q, steps, converged)
-
-
-def _slack(done: Pass, tolerance: float) -> float:
-    return max(1e-3 * done.chi_squared_before * 0, tolerance)
 
 
 def _after(done: Pass, step: Floats) -> float:

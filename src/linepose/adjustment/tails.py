@@ -1,10 +1,12 @@
-"""Heavy tails: a weight for the constant of every view and for the noise of every measurement.
+"""Heavy tails: weights of every view's constant, of every view's noise, and of every measurement's noise.
 
-A bad view is one whose constant comes from far out in the tail, a bad measurement one whose own noise does. Both are
-multivariate Student-t with nu degrees of freedom, written as normal with a random weight: q_v ~ N(0, I / w_v),
-w_v ~ Gamma(nu / 2, nu / 2), and the same of a measurement's two numbers. By expectation maximisation
+A bad view is one whose constant comes from far out in the tail (a clock that is off), or whose measurements all err
+more than others' (a jump, labels of another view); a bad measurement is one that errs alone (a label). All three are
+multivariate Student-t with nu degrees of freedom, written as normal with random weights: of d numbers x with sigma one,
+`x ~ N(0, I / w)`, `w ~ Gamma(nu / 2, nu / 2)`; a measurement's noise has its own weight times its view's. By
+expectation maximisation
 
-    E[w] = (nu + d) / (nu + E[x^T x]),    d = 6 of a view, 2 of a measurement,
+    E[w] = (nu + d) / (nu + E[x^T x]),    d = 6 of a constant, 2 of a measurement, 2 n of a view with n of them,
 
 where the expectation of the squares holds the posterior covariance: what the data do not tell keeps weight one.
 
@@ -28,50 +30,67 @@ from linepose.adjustment.levels import Levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.process import Weights
 from linepose.adjustment.solve import Model, pass_at
-from linepose.adjustment.state import Knowledge
 from linepose.rotations import Floats
 
 DEGREES_OF_FREEDOM: Final = 4.0
-VIEW_DIMENSION: Final = 6
+CONSTANT_DIMENSION: Final = 6
 MEASUREMENT_DIMENSION: Final = 2
 
 
 @dataclass(frozen=True)
-class Squares:
-    """Expected squares, in units of the levels without weights: of each view's constant (N,), of each noise (L,)."""
+class TailWeights:
+    """Expected weights: of each view's constant (N,) and of its noise (N,), of each measurement alone (L,)."""
 
-    of_view: Floats
-    of_measurement: Floats
+    constant: Floats
+    noise: Floats
+    single: Floats
+
+    def applied(self, measurements: Measurements) -> Weights:
+        """As the error process takes them."""
+        return Weights(self.constant, self.noise[measurements.view] * self.single)
 
 
-def expected_squares(
-    measurements: Measurements, knowledge: Knowledge, model: Model, levels: Levels, weights: Weights
-) -> Squares:
-    """What expectation maximisation weighs by, at a linear model and weights."""
-    process, done = pass_at(measurements, knowledge, model, levels, weights)
+def unit_tail_weights(measurements: Measurements) -> TailWeights:
+    """Every weight one."""
+    return TailWeights(np.ones(measurements.n_views), np.ones(measurements.n_views), np.ones(len(measurements.u_px)))
+
+
+def expected_weights(measurements: Measurements, model: Model, levels: Levels, before: TailWeights) -> TailWeights:
+    """One step of expectation maximisation at a linear model."""
+    weights = before.applied(measurements)
+    process, done = pass_at(measurements, model, levels, weights)
     slopes = slopes_of_density(measurements.structure, model.image, process, levels, weights, done)
-    return Squares(
-        np.maximum(VIEW_DIMENSION - slopes.by_view, 0.0) / weights.of_view,
-        np.maximum(MEASUREMENT_DIMENSION - slopes.by_measurement, 0.0) / weights.of_measurement,
+    of_constant = np.maximum(CONSTANT_DIMENSION - slopes.by_view, 0.0) / weights.of_view
+    of_noise = np.maximum(MEASUREMENT_DIMENSION - slopes.by_measurement, 0.0) / weights.of_measurement
+    view, nu = measurements.view, DEGREES_OF_FREEDOM
+    together = np.bincount(view, weights=before.single * of_noise, minlength=measurements.n_views)
+    noise = (nu + MEASUREMENT_DIMENSION * _counts(measurements)) / (nu + together)
+    return TailWeights(
+        (nu + CONSTANT_DIMENSION) / (nu + of_constant),
+        noise,
+        (nu + MEASUREMENT_DIMENSION) / (nu + noise[view] * of_noise),
     )
 
 
-def expected_weights(squares: Squares) -> Weights:
-    """Expected weights given the expected squares."""
-    nu = DEGREES_OF_FREEDOM
-    return Weights(
-        (nu + VIEW_DIMENSION) / (nu + squares.of_view),
-        (nu + MEASUREMENT_DIMENSION) / (nu + squares.of_measurement),
-    )
-
-
-def bound_of_weights(weights: Weights) -> float:
+def bound_of_weights(measurements: Measurements, weights: TailWeights) -> float:
     """What the weights add to the logarithm of the evidence's lower bound."""
-    return _bound(weights.of_view, VIEW_DIMENSION) + _bound(weights.of_measurement, MEASUREMENT_DIMENSION)
+    return (
+        _bound(weights.constant, np.full(measurements.n_views, CONSTANT_DIMENSION))
+        + _bound(weights.noise, MEASUREMENT_DIMENSION * _counts(measurements))
+        + _bound(weights.single, np.full(len(weights.single), MEASUREMENT_DIMENSION))
+    )
 
 
-def _bound(weight: Floats, dimension: int) -> float:
-    """Sum of `d/2 (E log w - log E w) - KL`, q(w) = Gamma(alpha, beta) with mean `weight` (B,)."""
+def _counts(measurements: Measurements) -> Floats:
+    """Number of measurements of each view (N,)."""
+    return np.bincount(measurements.view, minlength=measurements.n_views).astype(float)
+
+
+def _bound(weight: Floats, dimension: Floats) -> float:
+    """Sum of `d/2 (E log w - log E w) - KL`, q(w) = Gamma(alpha, beta) with mean `weight` (B,).
+
+    dimension (B,): d of each.
+    """
     prior = DEGREES_OF_FREEDOM / 2
     alpha = (DEGREES_OF_FREEDOM + dimension) / 2
     beta = alpha / weight

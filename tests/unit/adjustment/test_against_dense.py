@@ -48,7 +48,7 @@ class Case:
         self.levels = levels
         self.weights = Weights(random.uniform(0.3, 1.2, m.n_views), random.uniform(0.3, 1.2, n))
         self.model = model_at(m, self.knowledge, self.state)
-        self.process, self.done = pass_at(m, self.knowledge, self.model, levels, self.weights)
+        self.process, self.done = pass_at(m, self.model, levels, self.weights)
         self._dense(survey)
 
     def _dense(self, survey):
