@@ -72,6 +72,6 @@ def lateness_of_views(
     """
     period = period_s if period_s is not None else line_period_s(time_us, view)
     rates = body_rates(body_pose, time_us, view)
-    known = np.isfinite(rates).all(axis=1) if period is not None else np.zeros(len(rates), dtype=bool)
-    motion = np.where(known[:, None], rates * (period or 0.0), 0.0)
-    return motion, np.where(known, 0.0, 2.0 * sigma_v_px)
+    motion = np.nan_to_num(rates * (period or 0.0), nan=0.0)
+    moves = np.any(motion != 0, axis=1)
+    return motion, np.where(moves, 0.0, 2.0 * sigma_v_px)

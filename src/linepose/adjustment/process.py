@@ -70,7 +70,7 @@ class Components(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """Weights of the constant of each view (N,) and of the noise of each measurement (L,), one where nothing is wrong."""
+    """Weights of the constant of each view (N,) and of the noise of each measurement (L,), one if none is wrong."""
 
     of_view: Floats
     of_measurement: Floats

@@ -108,13 +108,13 @@ def warnings_of(quality: Quality) -> tuple[str, ...]:
         said.append("the adjustment has not converged: start from a pose nearer to the camera's")
     if not quality.least_eigenvalue >= TRUSTED_EIGENVALUE:
         said.append(
-            f"chi squared curves only {quality.least_eigenvalue:.2f} of what the normal equations say in one direction, "
+            f"chi squared curves {quality.least_eigenvalue:.2f} of what the normal equations say in one direction, "
             f"expected {TRUSTED_EIGENVALUE} or more: do not trust the sigmas; add observations"
         )
     if quality.pareto_shape > TRUSTED_SHAPE or quality.effective_draws < FEWEST_EFFECTIVE_DRAWS:
         said.append(
-            f"draws of the levels are worth {quality.effective_draws:.0f} (Pareto shape {quality.pareto_shape:.2f}), expected "
-            f"{FEWEST_EFFECTIVE_DRAWS:.0f} or more (below {TRUSTED_SHAPE}): raise n_draws"
+            f"draws of the levels are worth {quality.effective_draws:.0f} (Pareto shape {quality.pareto_shape:.2f}), "
+            f"expected {FEWEST_EFFECTIVE_DRAWS:.0f} or more (below {TRUSTED_SHAPE}): raise n_draws"
         )
     if np.any(np.abs(quality.disagreement_sigmas) > DISAGREEMENT_SIGMAS):
         said.append(

@@ -15,10 +15,12 @@ def euler_matrix(angles):
 
 def vector_matrix(vector):
     """Rotation matrix of a small or large rotation vector by the exponential series, valid for complex arguments."""
+    if not np.any(vector):
+        return np.eye(3)
     x, y, z = vector
     k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     total, term = np.eye(3, dtype=k.dtype), np.eye(3, dtype=k.dtype)
-    for n in range(1, 40):
+    for n in range(1, 20):
         term = term @ k / n
         total = total + term
     return total

@@ -20,6 +20,7 @@ from linepose.adjustment.solve import model_at, pass_at, solve
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at
 from linepose.adjustment.whitening import unwhiten
+from linepose.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
 
 CAMERA = timed_survey.CAMERA
 HAND = timed_survey.POSE + np.array([0.03, -0.02, 0.04, 0.01, -0.02, 0.015])
@@ -171,7 +172,7 @@ def test_points_of_which_something_is_known():
 
 
 def test_least_squares_over_all_unknowns_finds_the_same_optimum():
-    survey = timed_survey.make_survey(4, 4, seed=12)
+    survey = timed_survey.make_survey(3, 3, seed=12)
     case = Case(LEVELS, survey=survey)
     m, n = case.measurements, len(case.measurements.u_px)
     weights = unit_weights(m)
@@ -192,25 +193,27 @@ def test_least_squares_over_all_unknowns_finds_the_same_optimum():
     pixel = np.array([LEVELS.pixel * CAMERA.sigmas.u_px, 0.05])
     hand = case.knowledge.hand
 
+    whitening = np.linalg.inv(np.linalg.cholesky(hand.covariance))
+    sigmas = [CAMERA.sigmas.principal_point_px, CAMERA.sigmas.focal_length_m]
+
     def residuals(x):
         camera, points, latent = x[:8] * scale, x[8 : 8 + 3 * m.n_points].reshape(-1, 3), x[8 + 3 * m.n_points :]
         bodies = m.body_pose + (root @ latent).reshape(-1, 6)
-        intrinsics = [
-            base.principal_point_px + camera[6] - CAMERA.principal_point_px,
-            base.focal_length_m + camera[7] - CAMERA.focal_length_m,
-        ]
-        step = np.concatenate([camera[:6], intrinsics])
+        intrinsics = np.array(
+            [
+                base.principal_point_px + camera[6] - CAMERA.principal_point_px,
+                base.focal_length_m + camera[7] - CAMERA.focal_length_m,
+            ]
+        )
+        step = np.concatenate([[0] * 6, intrinsics])
+        lever, rotation = base.position_m + camera[:3], dense.vector_matrix(camera[3:6]) @ base.rotation
         rows = [
-            ([m.u_px[i], 0] - dense.project(CAMERA, base.position_m, base.rotation, step, bodies[i], points[k])) / pixel
+            ([m.u_px[i], 0] - dense.project(CAMERA, lever, rotation, step, bodies[i], points[k])) / pixel
             for i, k in enumerate(m.point)
         ]
-        information, vector, chi_squared = hand.information(
-            base.position_m + camera[:3], dense.vector_matrix(camera[3:6]) @ base.rotation
-        )
-        off = np.sqrt(max(chi_squared, 0.0))
-        sigmas = [CAMERA.sigmas.principal_point_px, CAMERA.sigmas.focal_length_m]
-        del information, vector
-        return np.concatenate([*rows, latent, [off], np.array(intrinsics) / sigmas])
+        turn = rotation_vector_from_matrix(matrix_from_rotation_vector(hand.pose[3:]) @ rotation.T)
+        off = whitening @ np.concatenate([hand.pose[:3] - lever, turn])
+        return np.concatenate([*rows, latent, off, intrinsics / sigmas])
 
     scale = np.sqrt(np.diag(trailing_inverse(found.done.upper, 8)))[[2, 3, 4, 5, 6, 7, 0, 1]]
     random = np.random.default_rng(1)
