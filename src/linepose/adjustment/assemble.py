@@ -1,0 +1,157 @@
+"""The result of an adjustment, put together on the survey's grid."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from linepose import rotations
+from linepose.adjustment.curvature import Curvature
+from linepose.adjustment.estimate import Estimate
+from linepose.adjustment.hand_measured import HandMeasured
+from linepose.adjustment.levels import N_LEVELS
+from linepose.adjustment.measurements import Measurements
+from linepose.adjustment.normal import N_POSE
+from linepose.adjustment.posterior import Mixture
+from linepose.adjustment.process import Weights
+from linepose.adjustment.result import Adjustment, Diagnostics, Quality, gridded, warnings_of, weighted_quantiles
+from linepose.adjustment.settings import Settings
+from linepose.adjustment.state import Knowledge, State
+from linepose.observations import Survey
+from linepose.pose import POSE_COLUMNS
+from linepose.rotations import Floats
+
+_OPEN_SHARE: Final = 0.9  # of the hand measurement's sigma, above which the data have said nothing
+_INTERVAL: Final = (0.025, 0.975)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The minimum of chi squared over all measurements.
+
+    z (L, 6), q (N, 6): the process; weights: of the tails; normalised (L, 2): residuals; chi_squared; converged.
+    """
+
+    state: State
+    z: Floats
+    q: Floats
+    weights: Weights
+    normalised: Floats
+    chi_squared: float
+    converged: bool
+
+
+def assembled(
+    survey: Survey,
+    measurements: Measurements,
+    knowledge: Knowledge,
+    fit: Fit,
+    found: Estimate,
+    curved: Curvature,
+    spread: Mixture,
+    settings: Settings,
+) -> Adjustment:
+    """The result on the survey's grid, from the fit of all measurements and what tells its levels and its spread."""
+    state, weights = fit.state, fit.weights
+    _, step_covariance = spread.moments()
+    by_parameters = np.eye(N_POSE)
+    by_parameters[3:, 3:] = np.linalg.inv(rotations.small_rotation_by_rotation_vector(state.pose[3:]))
+    grid = measurements.row, measurements.column, survey.u_px.shape
+    points = np.full((survey.n_points, 3), np.nan)
+    points[measurements.points] = state.points_m
+    view_rows = np.empty(measurements.n_views, dtype=np.int64)
+    view_rows[measurements.view] = measurements.row
+    constants, view_weight = np.full((survey.n_observations, N_POSE), np.nan), np.full(survey.n_observations, np.nan)
+    constants[view_rows], view_weight[view_rows] = fit.q, weights.of_view
+    return Adjustment(
+        pose=state.pose,
+        covariance=by_parameters @ step_covariance @ by_parameters.T,
+        principal_point_px=state.principal_point_px,
+        focal_length_m=state.focal_length_m,
+        points_m=points,
+        levels=found.levels,
+        level_intervals=_intervals(found, spread),
+        corrections=gridded(state.correction, *grid),
+        constants=constants,
+        drifts=gridded(fit.z, *grid),
+        view_weight=view_weight,
+        measurement_weight=gridded(weights.of_measurement, *grid),
+        normalised=gridded(fit.normalised, *grid),
+        samples=_samples(state, spread, settings),
+        diagnostics=_diagnostics(measurements, knowledge, fit, found, curved, spread, step_covariance),
+    )
+
+
+def _samples(state: State, spread: Mixture, settings: Settings) -> pd.DataFrame:
+    """Independent draws in a chain's columns: each its own walker of one step; log_likelihood is of its levels."""
+    random = np.random.default_rng([settings.seed, 1])
+    steps, component = spread.draw(random, settings.n_samples)
+    poses = stepped(state, steps)
+    return pd.DataFrame(
+        {
+            "walker": np.arange(len(steps), dtype=np.int64),
+            "step": np.zeros(len(steps), dtype=np.int64),
+            **{name: poses[:, i] for i, name in enumerate(POSE_COLUMNS)},
+            "log_likelihood": -spread.negative_log_density[component],
+        }
+    )
+
+
+def stepped(state: State, steps: Floats) -> Floats:
+    """Poses (S, 6), with rotation vectors, at steps (S, 6) of position and small rotation from a state."""
+    turned = rotations.matrix_from_rotation_vector(steps[:, 3:]) @ state.rotation
+    return np.concatenate([state.position_m + steps[:, :3], rotations.rotation_vector_from_matrix(turned)], axis=1)
+
+
+def _intervals(found: Estimate, spread: Mixture) -> Floats:
+    intervals = np.full((N_LEVELS, 2), np.nan)
+    for i in found.restricted.free:
+        intervals[i] = np.exp(weighted_quantiles(spread.log_levels[:, i], spread.weight, _INTERVAL))
+    return intervals
+
+
+def _diagnostics(
+    measurements: Measurements,
+    knowledge: Knowledge,
+    fit: Fit,
+    found: Estimate,
+    curved: Curvature,
+    spread: Mixture,
+    covariance: Floats,
+) -> Diagnostics:
+    disagreement = np.full(N_POSE, np.nan)
+    open_directions: tuple[str, ...] = ()
+    if knowledge.hand is not None:
+        disagreement, open_directions = _beside_hand(knowledge.hand, fit.state, covariance)
+    quality = Quality(
+        converged=fit.converged,
+        least_eigenvalue=curved.least_eigenvalue,
+        effective_draws=spread.effective_size,
+        pareto_shape=spread.pareto_shape,
+        disagreement_sigmas=disagreement,
+        open_directions=open_directions,
+        drift_known=measurements.timed,
+    )
+    return Diagnostics(
+        **vars(quality),
+        n_rounds=found.n_rounds,
+        n_passes=found.n_passes,
+        chi_squared=fit.chi_squared,
+        degrees_of_freedom=2 * len(measurements.u_px) - 3 * measurements.n_points - N_POSE,
+        heavy_tails=bool(np.any(fit.weights.of_view != 1) or np.any(fit.weights.of_measurement != 1)),
+        warnings=warnings_of(quality),
+    )
+
+
+def _beside_hand(hand: HandMeasured, state: State, covariance: Floats) -> tuple[Floats, tuple[str, ...]]:
+    """How many sigmas the hand measurement is off what the data say alone (6,), and what the data leave to it."""
+    hand_matrix = rotations.matrix_from_rotation_vector(hand.pose[3:])
+    turn = rotations.rotation_vector_from_matrix(hand_matrix @ state.rotation.T)
+    error = np.concatenate([hand.pose[:3] - state.position_m, turn])
+    prior, posterior = np.diag(hand.covariance), np.diag(covariance)
+    left = np.maximum(prior - posterior, 0.01 * prior)
+    open_ = tuple(
+        name for name, share in zip(POSE_COLUMNS, np.sqrt(posterior / prior), strict=True) if share > _OPEN_SHARE
+    )
+    return error / np.sqrt(left), open_

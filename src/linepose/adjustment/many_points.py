@@ -1,0 +1,138 @@
+"""Surveys of many points: levels from some of the points, the pose from all of them.
+
+Levels are properties of the navigation system and the camera, which a few hundred points tell as well as ten thousand;
+their density needs determinants, for which the dense normal equations of those few are formed. With the levels so found
+the pose is the minimum of chi squared over all measurements, by conjugate gradients. Its spread over the draws of the
+levels and the curvature are those of the few, in units of the covariance that all have.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from linepose.adjustment.iterative import blocks, conjugate_gradients, equations
+from linepose.adjustment.levels import Levels
+from linepose.adjustment.linearise import empty_linearised, linearise
+from linepose.adjustment.measurements import Measurements
+from linepose.adjustment.normal import N_CAMERA, N_POSE
+from linepose.adjustment.posterior import Mixture
+from linepose.adjustment.process import Weights, components, corrections, error_image
+from linepose.adjustment.state import Knowledge, State
+from linepose.adjustment.tails import DEGREES_OF_FREEDOM, MEASUREMENT_DIMENSION
+from linepose.adjustment.whitening import factorise, unwhiten, whiten
+from linepose.errors import EstimationError
+from linepose.observations import Survey
+from linepose.rotations import Floats
+
+MANY_POINTS: Final = 150  # above which the normal equations are not formed as a matrix
+_TOLERANCE: Final = 1e-6  # of chi squared
+_PRECISION: Final = 1e-7  # of a step, in the preconditioner's norm
+_COVARIANCE_PRECISION: Final = 1e-4
+_MOST_STEPS: Final = 30
+_LOOSE: Final = 1e-2  # of chi squared, where weights move
+_WEIGHT_TOLERANCE: Final = 0.1  # of a logarithm
+_WEIGHT_SUM: Final = DEGREES_OF_FREEDOM + MEASUREMENT_DIMENSION
+
+
+@dataclass(frozen=True)
+class ManySolution:
+    """A minimum of chi squared over all measurements.
+
+    camera_covariance (8, 8): of principal point, focal length and pose; whitened (L, 2): residuals; z (L, 6), q (N, 6):
+    the process; weights: of the tails; chi_squared; n_steps; converged.
+    """
+
+    state: State
+    camera_covariance: Floats
+    whitened: Floats
+    z: Floats
+    q: Floats
+    weights: Weights
+    chi_squared: float
+    n_steps: int
+    converged: bool
+
+
+def some_points(survey: Survey, seed: int) -> Survey:
+    """The survey of as many points as determinants are formed for, drawn from those that most views have."""
+    count = np.isfinite(survey.u_px).sum(axis=0)
+    often = np.flatnonzero(count >= max(np.median(count[count > 0]), 2))
+    random = np.random.default_rng([seed, 2])
+    chosen = random.choice(often, size=min(MANY_POINTS, len(often)), replace=False)
+    left = np.ones(survey.n_points, dtype=bool)
+    left[chosen] = False
+    u_px = survey.u_px.copy()
+    u_px[:, left] = np.nan
+    return replace(survey, u_px=u_px)
+
+
+def solve_many(
+    measurements: Measurements,
+    knowledge: Knowledge,
+    start: State,
+    levels: Levels,
+    weights: Weights,
+    *,
+    tails: bool = False,
+) -> ManySolution:
+    """The minimum of chi squared near a start, by Gauss-Newton; memory and time are linear in the measurements.
+
+    With `tails` every step weighs each measurement by its two whitened residuals, w = 6 / (4 + d). Raises EstimationError where a point is behind the camera, or the normal equations cannot be solved.
+    """
+    structure, n_points = measurements.structure, measurements.n_points
+    state, steps = start, 0
+    while True:
+        linearised = empty_linearised(len(measurements.u_px))
+        if linearise(
+            measurements.u_px,
+            measurements.body_pose + state.correction,
+            measurements.point,
+            state.points_m,
+            state.optics(knowledge.camera),
+            linearised,
+        ):
+            raise EstimationError(
+                "adjustment: a point lies behind the camera; start from a pose nearer to the camera's"
+            )
+        process = components(structure, error_image(structure, linearised), levels, weights)
+        factor = factorise(process, structure.view_of, structure.begins)
+        system = equations(linearised, measurements.point, factor, knowledge.prior(state, measurements))
+        moved = np.einsum("lri,li->lr", linearised.by_body, state.correction)
+        residual = (linearised.residual_px + moved).ravel()
+        right, inverse = system.right_side(residual), blocks(system)
+        step, _ = conjugate_gradients(system, inverse, right, _PRECISION)
+        gain = float(right[:, 0] @ step[:, 0])
+        left = residual[:, None] - system.times_design(step)
+        whiten(factor, left)
+        whitened = left.reshape(-1, 2)
+        dual = unwhiten(factor, whitened)
+        correction, z, q = corrections(structure, process, linearised, levels, weights, dual)
+        before = weights.of_measurement
+        if tails:
+            squares = np.sum(whitened**2, axis=1) / before
+            weights = weights._replace(of_measurement=_WEIGHT_SUM / (DEGREES_OF_FREEDOM + squares))
+        settled = bool(np.max(np.abs(np.log(weights.of_measurement / before))) < _WEIGHT_TOLERANCE)
+        converged = gain < (_LOOSE if tails else _TOLERANCE) and settled
+        if converged or steps >= _MOST_STEPS:
+            break
+        state, steps = state.moved(step[:, 0], correction), steps + 1
+    unit = np.zeros((3 * n_points + N_CAMERA, N_CAMERA))
+    unit[-N_CAMERA:] = np.eye(N_CAMERA)
+    inverse_columns, _ = conjugate_gradients(system, inverse, unit, _COVARIANCE_PRECISION)
+    covariance = inverse_columns[-N_CAMERA:]
+    chi_squared = float(np.sum(whitened**2)) + system.prior.chi_squared
+    symmetric = (covariance + covariance.T) / 2
+    return ManySolution(state, symmetric, whitened, z, q, weights, chi_squared, steps, converged)
+
+
+def spread_of_many(few: Mixture, few_covariance: Floats, covariance: Floats) -> Mixture:
+    """The mixture of few points in units of the pose's covariance (6, 6) of many, from that of few."""
+    scale = np.linalg.cholesky(covariance) @ np.linalg.inv(np.linalg.cholesky(few_covariance))
+    return replace(few, mean=few.mean @ scale.T, covariance=scale @ few.covariance @ scale.T)
+
+
+def normalised_of_many(solution: ManySolution, n_points: int) -> Floats:
+    """Whitened residuals (L, 2) divided by the sigma that all have on the mean."""
+    redundancy = 1 - (3 * n_points + N_POSE) / solution.whitened.size
+    return solution.whitened / np.sqrt(max(redundancy, 1e-3))
