@@ -16,7 +16,7 @@ from linepose.rotations import Floats
 
 LEVEL_TOLERANCE: Final = 0.02  # of a logarithm, in one round
 _SLOPES: Final = (0.2, 0.01)  # of the levels' density where their search ends, in the first round and later
-_TIGHT, _LOOSE = 1e-9, 1e-4  # of chi squared, at the end and while levels move
+_TIGHT, _LOOSE = 1e-6, 1e-4  # of chi squared, at the end and while levels move
 _OF_DRIFT: Final = ("drift", "correlation_time_s")
 
 

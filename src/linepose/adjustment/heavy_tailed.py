@@ -22,7 +22,7 @@ _SWEEPS: Final = 6  # of weights at fixed levels
 _SCREEN_SWEEPS: Final = 3
 _ROUNDS: Final = 20
 _SLOPE: Final = 0.03  # of the levels' density by their logarithms
-_LOOSE: Final = 1e-3  # of chi squared, while weights move
+_TIGHT, _LOOSE = 1e-6, 1e-3  # of chi squared, at the end and while weights move
 
 
 def with_tails(
@@ -103,7 +103,7 @@ def _heavy_tailed(
         settled = bool(np.max(np.abs(log_levels - start)) < _LEVEL_TOLERANCE and moved < _WEIGHT_TOLERANCE)
         if settled or rounds >= _ROUNDS:
             break
-    solution = solve(measurements, knowledge, state, levels, weights)
+    solution = solve(measurements, knowledge, state, levels, weights, tolerance=_TIGHT)
     restricted = Restricted(measurements, solution.model, weights, settings.priors, free, logs)
     evidence = bound_of_weights(measurements, tails) - restricted.negative_log_density(log_levels)
     found = Estimate(

@@ -26,6 +26,7 @@ from linepose.observations import Survey
 from linepose.rotations import Floats
 
 MANY_POINTS: Final = 150  # above which the normal equations are not formed as a matrix
+FEW_POINTS: Final = 60  # that then tell the levels
 _TOLERANCE: Final = 1e-6  # of chi squared
 _PRECISION: Final = 1e-7  # of a step, in the preconditioner's norm
 _COVARIANCE_PRECISION: Final = 1e-4
@@ -59,7 +60,7 @@ def some_points(survey: Survey, seed: int) -> Survey:
     count = np.isfinite(survey.u_px).sum(axis=0)
     often = np.flatnonzero(count >= max(np.median(count[count > 0]), 2))
     random = np.random.default_rng([seed, 2])
-    chosen = random.choice(often, size=min(MANY_POINTS, len(often)), replace=False)
+    chosen = random.choice(often, size=min(FEW_POINTS, len(often)), replace=False)
     left = np.ones(survey.n_points, dtype=bool)
     left[chosen] = False
     u_px = survey.u_px.copy()
@@ -78,7 +79,8 @@ def solve_many(
 ) -> ManySolution:
     """The minimum of chi squared near a start, by Gauss-Newton; memory and time are linear in the measurements.
 
-    With `tails` every step weighs each measurement by its two whitened residuals, w = 6 / (4 + d). Raises EstimationError where a point is behind the camera, or the normal equations cannot be solved.
+    With `tails` every step weighs each measurement by its two whitened residuals, w = 6 / (4 + d). Raises
+    EstimationError where a point is behind the camera, or the normal equations cannot be solved.
     """
     structure, n_points = measurements.structure, measurements.n_points
     state, steps = start, 0
