@@ -9,6 +9,6 @@ from linepose.adjustment.adjust import adjust
 from linepose.adjustment.levels import LevelPriors, Levels
 from linepose.adjustment.measurements import KnownPoints
 from linepose.adjustment.result import Adjustment, Diagnostics
-from linepose.adjustment.settings import Settings
+from linepose.adjustment.settings import AdjustmentSettings
 
-__all__ = ["Adjustment", "Diagnostics", "KnownPoints", "LevelPriors", "Levels", "Settings", "adjust"]
+__all__ = ["Adjustment", "AdjustmentSettings", "Diagnostics", "KnownPoints", "LevelPriors", "Levels", "adjust"]

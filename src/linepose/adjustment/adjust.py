@@ -16,14 +16,14 @@ from linepose.adjustment.normal import N_POSE, trailing_inverse
 from linepose.adjustment.posterior import Mixture, mixture
 from linepose.adjustment.residuals import normalised_residuals
 from linepose.adjustment.result import Adjustment
-from linepose.adjustment.settings import Settings, default_hand_covariance
+from linepose.adjustment.settings import AdjustmentSettings, default_hand_covariance
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.observations import Survey
-from linepose.pose import check_pose
-from linepose.rotations import Floats
+from linepose.geometry.camera import Camera
+from linepose.geometry.pose import check_pose
+from linepose.survey.observations import Survey
 
 
 def adjust(
@@ -31,7 +31,7 @@ def adjust(
     camera: Camera,
     hand_measured_pose: ArrayLike,
     hand_covariance: ArrayLike | None = None,
-    settings: Settings | None = None,
+    settings: AdjustmentSettings | None = None,
     known_points: KnownPoints | None = None,
 ) -> Adjustment:
     """The camera's pose with its posterior, from a hand-measured pose (6,), which is start and prior.
@@ -40,7 +40,7 @@ def adjust(
     InputError for observations, covariances or sigmas of the camera that are of no use, EstimationError where no start
     leads to an estimate.
     """
-    settings = settings or Settings()
+    settings = settings or AdjustmentSettings()
     pose = check_pose(hand_measured_pose, "hand-measured pose")
     _check_camera(camera)
     hand = hand_measured(
@@ -80,7 +80,7 @@ def adjust(
 
 
 def _of_all(
-    measurements: Measurements, knowledge: Knowledge, pose: Floats, hand: HandMeasured, settings: Settings
+    measurements: Measurements, knowledge: Knowledge, pose: Floats, hand: HandMeasured, settings: AdjustmentSettings
 ) -> tuple[Fit, Estimate, Curvature, Mixture]:
     """All measurements at once, where their normal equations are small."""
     found = with_tails(

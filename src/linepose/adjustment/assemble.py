@@ -6,7 +6,6 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from linepose import rotations
 from linepose.adjustment.curvature import Curvature
 from linepose.adjustment.estimate import Estimate
 from linepose.adjustment.hand_measured import HandMeasured
@@ -16,11 +15,12 @@ from linepose.adjustment.normal import N_POSE
 from linepose.adjustment.posterior import Mixture
 from linepose.adjustment.process import Weights
 from linepose.adjustment.result import Adjustment, Diagnostics, Quality, gridded, warnings_of, weighted_quantiles
-from linepose.adjustment.settings import Settings
+from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.state import Knowledge, State
-from linepose.observations import Survey
-from linepose.pose import POSE_COLUMNS
-from linepose.rotations import Floats
+from linepose.arrays import Floats
+from linepose.geometry import rotations
+from linepose.geometry.pose import POSE_COLUMNS
+from linepose.survey.observations import Survey
 
 _OPEN_SHARE: Final = 0.9  # of the hand measurement's sigma, above which the data have said nothing
 _INTERVAL: Final = (0.025, 0.975)
@@ -50,13 +50,13 @@ def assembled(
     found: Estimate,
     curved: Curvature,
     spread: Mixture,
-    settings: Settings,
+    settings: AdjustmentSettings,
 ) -> Adjustment:
     """The result on the survey's grid, from the fit of all measurements and what tells its levels and its spread."""
     state, weights = fit.state, fit.weights
     _, step_covariance = spread.moments()
     by_parameters = np.eye(N_POSE)
-    by_parameters[3:, 3:] = np.linalg.inv(rotations.small_rotation_by_rotation_vector(state.pose[3:]))
+    by_parameters[3:, 3:] = np.linalg.inv(rotations.left_jacobian_so3(state.pose[3:]))
     grid = measurements.row, measurements.column, survey.u_px.shape
     points = np.full((survey.n_points, 3), np.nan)
     points[measurements.points] = state.points_m
@@ -83,7 +83,7 @@ def assembled(
     )
 
 
-def _samples(state: State, spread: Mixture, settings: Settings) -> pd.DataFrame:
+def _samples(state: State, spread: Mixture, settings: AdjustmentSettings) -> pd.DataFrame:
     """Independent draws in a chain's columns: each its own walker of one step; log_likelihood is of its levels."""
     random = np.random.default_rng([settings.seed, 1])
     steps, component = spread.draw(random, settings.n_samples)

@@ -15,15 +15,15 @@ from typing import Final
 
 import numpy as np
 
-from linepose import rotations
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_POSE, Pass, trailing_inverse
 from linepose.adjustment.process import Weights
 from linepose.adjustment.solve import Solution, solve
 from linepose.adjustment.state import Knowledge, State
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
-from linepose.rotations import Floats
+from linepose.geometry import rotations
 
 HELD: Final = (0.25, 4.0)  # range in which the eigenvalues of H in units of N are held
 TRUSTED_EIGENVALUE: Final = 0.3  # the least one below which the covariance is not to be trusted
@@ -80,7 +80,7 @@ def _score(
     state: State = solution.state.moved(full, solution.state.correction)
     near = solve(measurements, knowledge, state, levels, weights, tolerance=_TOLERANCE, max_steps=12, pose_held=True)
     gradient = pose_gradient(near.done)
-    gradient[3:] = rotations.small_rotation_by_rotation_vector(step[3:]).T @ gradient[3:]
+    gradient[3:] = rotations.left_jacobian_so3(step[3:]).T @ gradient[3:]
     return gradient
 
 

@@ -9,10 +9,10 @@ from linepose.adjustment.levels import LEVEL_NAMES, Levels, levels_from_log, log
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.process import Weights
 from linepose.adjustment.reml import Restricted, most_likely
-from linepose.adjustment.settings import Settings
+from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.solve import Solution, solve
 from linepose.adjustment.state import Knowledge, State
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 LEVEL_TOLERANCE: Final = 0.02  # of a logarithm, in one round
 _SLOPES: Final = (0.2, 0.01)  # of the levels' density where their search ends, in the first round and later
@@ -55,7 +55,7 @@ def estimate(
     start: State,
     levels: Levels,
     weights: Weights,
-    settings: Settings,
+    settings: AdjustmentSettings,
     *,
     damping: float = 0.0,
 ) -> Estimate:

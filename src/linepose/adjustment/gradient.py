@@ -17,7 +17,7 @@ from linepose.adjustment.levels import Levels
 from linepose.adjustment.normal import Pass
 from linepose.adjustment.process import Components, ErrorImage, ErrorStructure, Weights
 from linepose.adjustment.whitening import N_STATE, Factor, unwhiten_columns
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 DRIFT, WHITE, CONSTANT, PIXEL, LATENESS, TIME, ATTITUDE = range(7)
 _N: Final = 7

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linepose import rotations
+from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.pose import check_pose
-from linepose.rotations import Floats
+from linepose.geometry import rotations
+from linepose.geometry.pose import check_pose
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class HandMeasured:
         turn = rotations.rotation_vector_from_matrix(rotations.matrix_from_rotation_vector(self.pose[3:]) @ rotation.T)
         error = np.concatenate([self.pose[:3] - position_m, turn])
         by_step = np.eye(6)
-        by_step[3:, 3:] = np.linalg.inv(rotations.small_rotation_by_rotation_vector(-turn))
+        by_step[3:, 3:] = np.linalg.inv(rotations.left_jacobian_so3(-turn))
         inverse = np.linalg.inv(self.covariance)
         weighted = by_step.T @ inverse
         return weighted @ by_step, weighted @ error, float(error @ inverse @ error)

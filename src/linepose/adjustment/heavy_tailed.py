@@ -9,7 +9,7 @@ from linepose.adjustment.estimate import Estimate, estimate, free_levels, unit_w
 from linepose.adjustment.levels import Levels, levels_from_log, log_from_levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.reml import Restricted, most_likely
-from linepose.adjustment.settings import Settings
+from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.solve import solve
 from linepose.adjustment.state import Knowledge, State
 from linepose.adjustment.tails import TailWeights, bound_of_weights, expected_weights, unit_tail_weights
@@ -30,7 +30,7 @@ def with_tails(
     knowledge: Knowledge,
     guided: Knowledge,
     start: State,
-    settings: Settings,
+    settings: AdjustmentSettings,
 ) -> Estimate:
     """The better of the normal model and the heavy-tailed one, by evidence.
 
@@ -76,7 +76,7 @@ def _heavy_tailed(
     state: State,
     levels: Levels,
     tails: TailWeights,
-    settings: Settings,
+    settings: AdjustmentSettings,
 ) -> tuple[Estimate, TailWeights]:
     """Weights, solution and levels in turn; the evidence is the lower bound."""
     free, logs = free_levels(measurements), log_from_levels(levels)

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from scipy.special import logsumexp
 
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 TRUSTED_SHAPE: Final = 0.7  # of the Pareto tail, above which the weights cannot be trusted
 _FEWEST_IN_TAIL: Final = 5

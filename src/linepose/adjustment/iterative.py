@@ -14,8 +14,8 @@ from linepose.adjustment.compiling import kernel
 from linepose.adjustment.linearise import Linearised
 from linepose.adjustment.normal import N_CAMERA, Prior
 from linepose.adjustment.whitening import Factor, unwhiten_columns, whiten
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
-from linepose.rotations import Floats
 
 _MOST_ITERATIONS: Final = 2000
 

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 
 class Levels(NamedTuple):

@@ -19,7 +19,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from linepose.adjustment.compiling import kernel
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 N_THETA: Final = 8
 

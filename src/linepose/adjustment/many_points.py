@@ -21,9 +21,9 @@ from linepose.adjustment.process import Weights, components, corrections, error_
 from linepose.adjustment.state import Knowledge, State
 from linepose.adjustment.tails import DEGREES_OF_FREEDOM, MEASUREMENT_DIMENSION
 from linepose.adjustment.whitening import factorise, unwhiten, whiten
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.survey.observations import Survey
 
 MANY_POINTS: Final = 150  # above which the normal equations are not formed as a matrix
 FEW_POINTS: Final = 60  # that then tell the levels

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from linepose.adjustment.motion import lateness_of_views
 from linepose.adjustment.process import ErrorStructure
-from linepose.camera import Camera
+from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.observations import Survey
-from linepose.rotations import Floats
+from linepose.geometry.camera import Camera
+from linepose.survey.observations import Survey
 
 NEGATIVE_EIGENVALUE: Final = 1e-9  # of the largest: rounding in a file, not an invalid covariance
 _RAYS: Final = 2  # that a point needs, of which nothing else is known

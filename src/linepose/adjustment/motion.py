@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 _LONGEST_GAP_US: Final = 200_000.0  # between two measurements whose difference of time is still compared with multiples
 _SHORTEST_PERIOD_US: Final = 100.0

@@ -13,7 +13,7 @@ from linepose.adjustment.compiling import kernel
 from linepose.adjustment.linearise import Linearised
 from linepose.adjustment.process import Components
 from linepose.adjustment.whitening import Factor, factorise, whiten
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 N_INTRINSICS: Final = 2
 N_POSE: Final = 6

@@ -15,7 +15,7 @@ from linepose.adjustment.importance import smoothed_weights
 from linepose.adjustment.normal import N_POSE, trailing_inverse
 from linepose.adjustment.proposal import Proposal, split_at_mode
 from linepose.adjustment.reml import Restricted
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 STAGE_SHARES: Final = (0.25, 0.25, 0.5)  # of the draws
 

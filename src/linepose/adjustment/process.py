@@ -21,7 +21,7 @@ import numpy as np
 from linepose.adjustment.compiling import kernel
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import Linearised
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 ACROSS_FLOOR_PX: Final = 0.05
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import chi2, multivariate_t, norm, qmc
 
 from linepose.adjustment.reml import Restricted
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 DEGREES_OF_FREEDOM: Final = 5
 _DIFFERENCE: Final = 0.1  # of a logarithm, for the curvature

@@ -20,7 +20,7 @@ from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import Pass
 from linepose.adjustment.process import Weights
 from linepose.adjustment.solve import Model, pass_at
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 LOG_RANGE: Final = (-12.0, 14.0)  # of a level's logarithm
 _WORST: Final = 1e10  # in place of infinity, where the density is zero

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from linepose.adjustment.normal import Pass, whitened_residual
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 _LEAST_REDUNDANCY = 1e-6  # below which a residual is nothing but rounding
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from linepose.adjustment.curvature import TRUSTED_EIGENVALUE
 from linepose.adjustment.importance import TRUSTED_SHAPE
 from linepose.adjustment.levels import Levels
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 FEWEST_EFFECTIVE_DRAWS: Final = 20.0
 DISAGREEMENT_SIGMAS: Final = 3.0

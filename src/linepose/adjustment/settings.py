@@ -1,37 +1,35 @@
 """Settings of the adjustment."""
 
-from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
+from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
 from linepose.adjustment.hand_measured import covariance_of_sigmas
 from linepose.adjustment.levels import START, LevelPriors, Levels
-from linepose.rotations import Floats
+from linepose.arrays import Floats
+from linepose.settings import Settings
 
 HAND_POSITION_M: Final = 0.1
 HAND_ROTATION_RAD: Final = float(np.deg2rad(2.0))
 
 
-@dataclass(frozen=True)
-class Settings:
-    """How the adjustment is done.
+class AdjustmentSettings(Settings):
+    """How the adjustment is done."""
 
-    hand_measured_prior: whether the hand measurement counts, or is but a start; priors and start of the levels;
-    line_period_s: duration of a line, None to read it from the time stamps; tails: whether a view's constant and
-    single measurements may have heavy tails; n_draws of the levels; n_samples of the pose; seed of both; max_rounds of
-    Gauss-Newton and levels in turn.
-    """
-
-    hand_measured_prior: bool = True
-    priors: LevelPriors = field(default_factory=LevelPriors)
-    start: Levels = START
-    line_period_s: float | None = None
-    tails: bool = True
-    n_draws: int = 200
-    n_samples: int = 2000
-    seed: int = 0
-    max_rounds: int = 12
+    hand_measured_prior: bool = Field(True, description="Whether the hand measurement counts, or is but a start.")
+    priors: LevelPriors = Field(LevelPriors(), description="Log-normal priors of the levels.")
+    start: Levels = Field(START, description="Levels to start from.")
+    line_period_s: PositiveFloat | None = Field(
+        None, description="Duration of a line (s); what time stamps are multiples of if null."
+    )
+    tails: bool = Field(
+        True, description="Whether views and single measurements may err far more than the rest, where the data say so."
+    )
+    n_draws: int = Field(200, ge=10, description="Draws of the levels.")
+    n_samples: PositiveInt = Field(2000, description="Draws of the pose.")
+    seed: NonNegativeInt = Field(0, description="Seed of all draws.")
+    max_rounds: PositiveInt = Field(12, description="Rounds of Gauss-Newton and levels in turn.")
 
 
 def default_hand_covariance() -> Floats:

@@ -20,8 +20,8 @@ from linepose.adjustment.normal import N_POSE, Pass, Prior, design, one_pass, so
 from linepose.adjustment.process import Components, ErrorImage, Weights, components, corrections, error_image
 from linepose.adjustment.state import Knowledge, State
 from linepose.adjustment.whitening import unwhiten
+from linepose.arrays import Floats
 from linepose.errors import EstimationError
-from linepose.rotations import Floats
 
 _LARGEST_DAMPING: Final = 1e8
 _LARGEST_TURN_RAD: Final = 0.3

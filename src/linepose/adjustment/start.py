@@ -4,11 +4,11 @@ from typing import Final
 
 import numpy as np
 
-from linepose import camera as cameras
-from linepose import rotations
 from linepose.adjustment.measurements import Measurements
-from linepose.camera import Camera
-from linepose.rotations import Floats
+from linepose.arrays import Floats
+from linepose.geometry import camera as cameras
+from linepose.geometry import rotations
+from linepose.geometry.camera import Camera
 
 _DAMPING: Final = 1e-3  # of the rays' directions: rays that are nearly parallel meet at the middle distance
 _LEAST_DEPTH_M: Final = 0.1

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linepose import rotations
 from linepose.adjustment.hand_measured import HandMeasured
 from linepose.adjustment.linearise import Optics
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_CAMERA, N_INTRINSICS, Prior
-from linepose.camera import Camera
-from linepose.rotations import Floats
+from linepose.arrays import Floats
+from linepose.geometry import rotations
+from linepose.geometry.camera import Camera
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from linepose.adjustment.levels import Levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.process import Weights
 from linepose.adjustment.solve import Model, pass_at
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 DEGREES_OF_FREEDOM: Final = 4.0
 CONSTANT_DIMENSION: Final = 6

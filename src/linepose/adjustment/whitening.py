@@ -12,7 +12,7 @@ import numpy as np
 
 from linepose.adjustment.compiling import kernel
 from linepose.adjustment.process import Components
-from linepose.rotations import Floats
+from linepose.arrays import Floats
 
 N_STATE: Final = 12
 

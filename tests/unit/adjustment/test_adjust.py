@@ -4,19 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import timed_survey
 
-from linepose.adjustment import KnownPoints, Settings, adjust
+from linepose.adjustment import AdjustmentSettings, KnownPoints, adjust
 from linepose.adjustment.hand_measured import covariance_of_sigmas
 from linepose.adjustment.motion import line_period_s
 from linepose.errors import EstimationError, InputError
-from linepose.pose import POSE_COLUMNS
-from linepose.result_schemas import SAMPLES
-from linepose.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
-from linepose.storage import write_table
+from linepose.geometry.pose import POSE_COLUMNS
+from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
+from linepose.pipeline.stages import SAMPLES
+from linepose.tables import write_table
+from unit.adjustment import timed_survey
 
 CAMERA = timed_survey.CAMERA
-QUICK = Settings(line_period_s=timed_survey.LINE_S, n_draws=60, n_samples=500)
+QUICK = AdjustmentSettings(line_period_s=timed_survey.LINE_S, n_draws=60, n_samples=500)
 
 
 def hand(shift_m=0.0, turn_rad=0.0):
@@ -69,7 +69,7 @@ def test_the_same_numbers_twice(found, survey):
 
 
 def test_any_start_within_half_a_metre_and_twenty_degrees(survey):
-    data_alone = replace(QUICK, hand_measured_prior=False, n_draws=20)
+    data_alone = QUICK.replaced(hand_measured_prior=False, n_draws=20)
     near = adjust(survey, CAMERA, hand(), settings=data_alone)
     far = adjust(survey, CAMERA, hand(0.5, np.deg2rad(20)), settings=data_alone)
     assert np.allclose(near.pose, far.pose, atol=0.02 * near.sigma.max())
@@ -164,7 +164,7 @@ def test_hand_covariances_that_are_of_no_use(survey, covariance):
 
 
 def test_a_camera_that_claims_to_be_known_exactly(survey):
-    exact = replace(CAMERA, sigmas=replace(CAMERA.sigmas, focal_length_m=0.0))
+    exact = CAMERA.replaced(sigmas=CAMERA.sigmas.replaced(focal_length_m=0.0))
     with pytest.raises(InputError, match="focal_length_m"):
         adjust(survey, exact, hand(), settings=QUICK)
 

@@ -2,10 +2,8 @@
 
 from dataclasses import replace
 
-import dense
 import numpy as np
 import pytest
-import timed_survey
 from scipy.optimize import least_squares
 
 from linepose.adjustment.estimate import unit_weights
@@ -20,7 +18,8 @@ from linepose.adjustment.solve import model_at, pass_at, solve
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at
 from linepose.adjustment.whitening import unwhiten
-from linepose.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
+from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
+from unit.adjustment import dense, timed_survey
 
 CAMERA = timed_survey.CAMERA
 HAND = timed_survey.POSE + np.array([0.03, -0.02, 0.04, 0.01, -0.02, 0.015])

@@ -1,23 +1,17 @@
 """The adjustment on the Ladybird field data: what a separate prototype of section 6's model found."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-sys.path.append(str(Path(__file__).parents[1] / "likelihood"))
-
-import field_data
-
-from linepose.adjustment import Settings, adjust
+from linepose.adjustment import AdjustmentSettings, adjust
+from unit.likelihood import field_data
 
 pytestmark = [pytest.mark.field, pytest.mark.skipif(not field_data.PRESENT, reason="no field data")]
 HAND_MEASURED = [0.200, 0.000, -0.800, -0.762, 0.762, -1.433]
 
 
 def found(survey, **settings):
-    return adjust(survey, field_data.CAMERA, HAND_MEASURED, settings=Settings(**settings))
+    return adjust(survey, field_data.CAMERA, HAND_MEASURED, settings=AdjustmentSettings(**settings))
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,14 @@
 """Derivatives of the levels' density by complex step through dense matrices, and by differences of the pass itself."""
 
-import dense
 import numpy as np
 import pytest
-import timed_survey
-from test_against_dense import CAMERA, LEVELS, Case
 
 from linepose.adjustment.gradient import slopes_of_density
 from linepose.adjustment.levels import LevelPriors, Levels, log_from_levels
 from linepose.adjustment.process import Weights
 from linepose.adjustment.reml import Restricted, most_likely
+from unit.adjustment import dense, timed_survey
+from unit.adjustment.test_against_dense import CAMERA, LEVELS, Case
 
 STEP = 1e-20
 

@@ -4,11 +4,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linepose.camera import Camera, CameraSigmas
-from linepose.observations import Survey
-from linepose.rotations import matrix_from_euler, matrix_from_rotation_vector
+from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
+from linepose.survey.observations import Survey
 
-CAMERA = Camera(8.0e-3, 8.0e-6, 600, 300.0, k1=-0.2, k2=0.1, sigmas=CameraSigmas(v_px=0.8))
+CAMERA = Camera(
+    focal_length_m=8.0e-3,
+    pixel_pitch_m=8.0e-6,
+    n_pixels=600,
+    principal_point_px=300.0,
+    k1=-0.2,
+    k2=0.1,
+    sigmas=CameraSigmas(v_px=0.8),
+)
 POSE = np.array([0.2, -0.05, -0.8, -0.8, 0.78, -1.45])
 SIGMA = np.array([0.01, 0.013, 0.011, 4e-3, 4.6e-3, 1.8e-3])
 SPEED_M_S = 0.2
