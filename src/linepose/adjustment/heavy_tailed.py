@@ -32,7 +32,7 @@ def with_tails(
     start: State,
     settings: AdjustmentSettings,
 ) -> Estimate:
-    """The better of the normal model and the heavy-tailed one, by evidence.
+    """The best of the normal model, tails of views, and tails of views and single measurements, by evidence.
 
     `guided` knows the hand measurement whatever the settings say: where many views are bad, the weights are found with
     its help before the pose is let go. Raises EstimationError where neither model has an estimate.
@@ -46,28 +46,34 @@ def with_tails(
         if normal is None:
             raise failure or EstimationError("adjustment: no estimate")
         return normal
-    try:
-        tails = unit_tail_weights(measurements)
-        first, tails = _heavy_tailed(measurements, guided, start, settings.start, tails, settings)
-        heavy = first
-        if knowledge.hand is not guided.hand:
-            heavy, _ = _heavy_tailed(measurements, knowledge, first.solution.state, first.levels, tails, settings)
-    except EstimationError as error:
-        if normal is None:
-            raise failure or error from error
-        return normal
-    return heavy if normal is None or heavy.log_evidence > normal.log_evidence else normal
+    candidates = [normal] if normal is not None else []
+    for alone in (False, True):
+        tails = unit_tail_weights(measurements, alone=alone)
+        try:
+            heavy, tails = _heavy_tailed(measurements, guided, start, settings.start, tails, settings)
+            if knowledge.hand is not guided.hand:
+                heavy, _ = _heavy_tailed(measurements, knowledge, heavy.solution.state, heavy.levels, tails, settings)
+        except EstimationError as error:
+            failure = failure or error
+            continue
+        candidates.append(heavy)
+    if not candidates:
+        raise failure or EstimationError("adjustment: no estimate")
+    return max(candidates, key=lambda one: one.log_evidence)
 
 
 def _hopeless(normal: Estimate) -> bool:
     """Whether heavy tails are so much worse at the normal model's estimate that they need not be tried."""
     restricted = normal.restricted
     measurements = restricted.measurements
-    tails = unit_tail_weights(measurements)
-    for _ in range(_SCREEN_SWEEPS):
-        tails = expected_weights(measurements, normal.solution.model, normal.levels, tails)
-    density = replace(restricted, weights=tails.applied(measurements)).negative_log_density(normal.log_levels)
-    return bool(bound_of_weights(measurements, tails) - density < normal.log_evidence - SCREEN_NATS)
+    evidence = -np.inf
+    for alone in (False, True):
+        tails = unit_tail_weights(measurements, alone=alone)
+        for _ in range(_SCREEN_SWEEPS):
+            tails = expected_weights(measurements, normal.solution.model, normal.levels, tails)
+        density = replace(restricted, weights=tails.applied(measurements)).negative_log_density(normal.log_levels)
+        evidence = max(evidence, bound_of_weights(measurements, tails) - density)
+    return bool(evidence < normal.log_evidence - SCREEN_NATS)
 
 
 def _heavy_tailed(

@@ -15,8 +15,8 @@ levels becomes a lower bound of the heavy-tailed model's evidence,
 
     -1/2 (chi^2 + log|C| + log|N|)_w + log prior + sum [ d/2 (E log w - log E w) - KL(q(w) | prior) ],
 
-which compares with the normal model's own. Where the normal model explains the data as well, it stands, and no sigma
-is lost to weights that nothing asks for.
+which compares with the normal model's own, and tells tails of views alone from tails of single measurements too. Where
+the normal model explains the data as well, it stands, and no sigma is lost to weights that nothing asks for.
 """
 
 from dataclasses import dataclass
@@ -39,20 +39,25 @@ MEASUREMENT_DIMENSION: Final = 2
 
 @dataclass(frozen=True)
 class TailWeights:
-    """Expected weights: of each view's constant (N,) and of its noise (N,), of each measurement alone (L,)."""
+    """Expected weights: of each view's constant (N,) and of its noise (N,), of each measurement alone (L,).
+
+    `alone`: whether single measurements have tails; without, their weights are one.
+    """
 
     constant: Floats
     noise: Floats
     single: Floats
+    alone: bool
 
     def applied(self, measurements: Measurements) -> Weights:
         """As the error process takes them."""
         return Weights(self.constant, self.noise[measurements.view] * self.single)
 
 
-def unit_tail_weights(measurements: Measurements) -> TailWeights:
+def unit_tail_weights(measurements: Measurements, *, alone: bool) -> TailWeights:
     """Every weight one."""
-    return TailWeights(np.ones(measurements.n_views), np.ones(measurements.n_views), np.ones(len(measurements.u_px)))
+    of_views = np.ones(measurements.n_views)
+    return TailWeights(of_views, of_views, np.ones(len(measurements.u_px)), alone)
 
 
 def expected_weights(measurements: Measurements, model: Model, levels: Levels, before: TailWeights) -> TailWeights:
@@ -65,20 +70,19 @@ def expected_weights(measurements: Measurements, model: Model, levels: Levels, b
     view, nu = measurements.view, DEGREES_OF_FREEDOM
     together = np.bincount(view, weights=before.single * of_noise, minlength=measurements.n_views)
     noise = (nu + MEASUREMENT_DIMENSION * _counts(measurements)) / (nu + together)
-    return TailWeights(
-        (nu + CONSTANT_DIMENSION) / (nu + of_constant),
-        noise,
-        (nu + MEASUREMENT_DIMENSION) / (nu + noise[view] * of_noise),
-    )
+    single = before.single
+    if before.alone:
+        single = (nu + MEASUREMENT_DIMENSION) / (nu + noise[view] * of_noise)
+    return TailWeights((nu + CONSTANT_DIMENSION) / (nu + of_constant), noise, single, before.alone)
 
 
 def bound_of_weights(measurements: Measurements, weights: TailWeights) -> float:
     """What the weights add to the logarithm of the evidence's lower bound."""
-    return (
-        _bound(weights.constant, np.full(measurements.n_views, CONSTANT_DIMENSION))
-        + _bound(weights.noise, MEASUREMENT_DIMENSION * _counts(measurements))
-        + _bound(weights.single, np.full(len(weights.single), MEASUREMENT_DIMENSION))
-    )
+    of_views = _bound(weights.constant, np.full(measurements.n_views, CONSTANT_DIMENSION))
+    of_views += _bound(weights.noise, MEASUREMENT_DIMENSION * _counts(measurements))
+    if not weights.alone:
+        return of_views
+    return of_views + _bound(weights.single, np.full(len(weights.single), MEASUREMENT_DIMENSION))
 
 
 def _counts(measurements: Measurements) -> Floats:
