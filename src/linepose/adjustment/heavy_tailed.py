@@ -16,6 +16,7 @@ from linepose.adjustment.tails import TailWeights, bound_of_weights, expected_we
 from linepose.errors import EstimationError
 
 SCREEN_NATS: Final = 10.0  # by which heavy tails may look worse at the normal model's estimate and are yet tried
+SINGLE_NATS: Final = 40.0  # by which tails of single measurements must win: their many weights are taken for known
 _WEIGHT_TOLERANCE: Final = 0.03  # of a logarithm
 _LEVEL_TOLERANCE: Final = 0.02  # of a logarithm
 _SWEEPS: Final = 6  # of weights at fixed levels
@@ -59,7 +60,14 @@ def with_tails(
         candidates.append(heavy)
     if not candidates:
         raise failure or EstimationError("adjustment: no estimate")
-    return max(candidates, key=lambda one: one.log_evidence)
+    return max(candidates, key=_preference)
+
+
+def _preference(one: Estimate) -> float:
+    """Evidence, less what tails of single measurements must win by."""
+    weights, view = one.weights.of_measurement, one.restricted.measurements.view
+    alone = bool(np.any(weights != weights[np.searchsorted(view, view)]))
+    return one.log_evidence - SINGLE_NATS * alone
 
 
 def _hopeless(normal: Estimate) -> bool:

@@ -1,0 +1,57 @@
+"""Many points: conjugate gradients find what the dense normal equations do."""
+
+import numpy as np
+import pytest
+
+from linepose.adjustment import AdjustmentSettings, adjust
+from linepose.adjustment import adjust as adjust_module
+from linepose.adjustment.estimate import unit_weights
+from linepose.adjustment.iterative import blocks, conjugate_gradients, equations
+from linepose.adjustment.many_points import solve_many
+from linepose.adjustment.normal import solve_step, trailing_inverse
+from linepose.adjustment.solve import solve
+from unit.adjustment import timed_survey
+from unit.adjustment.test_against_dense import LEVELS, Case
+
+
+@pytest.fixture(scope="module")
+def case():
+    return Case(LEVELS)
+
+
+def test_step_and_covariance_of_the_normal_equations(case):
+    system = equations(case.model.linearised, case.measurements.point, case.done.factor, case.model.prior)
+    inverse = blocks(system)
+    right = system.right_side(case.e)
+    assert np.allclose(right[:, 0], case.right, rtol=1e-9, atol=1e-9 * np.abs(case.right).max())
+    columns = np.eye(len(case.right))
+    assert np.allclose(system.times_normal(columns), case.normal, rtol=0, atol=1e-9 * np.abs(case.normal).max())
+    step, _ = conjugate_gradients(system, inverse, right, 1e-12)
+    sigma = np.sqrt(np.diag(np.linalg.inv(case.normal)))
+    dense_step = solve_step(case.done.upper, 3 * case.measurements.n_points, 0.0)
+    assert np.allclose((step[:, 0] - dense_step) / sigma, 0, atol=1e-6)
+
+
+def test_the_same_optimum_and_covariance(case):
+    weights = unit_weights(case.measurements)
+    many = solve_many(case.measurements, case.knowledge, case.state, LEVELS, weights)
+    few = solve(case.measurements, case.knowledge, case.state, LEVELS, weights, tolerance=1e-9)
+    covariance = trailing_inverse(few.done.upper, 8)
+    sigma = np.sqrt(np.diag(covariance))
+    assert many.converged
+    # a chi squared of 1e-6 above the minimum is a thousandth of a sigma
+    assert np.all(np.abs(many.state.pose - few.state.pose) < 3e-3 * sigma[2:])
+    assert np.allclose(many.camera_covariance / np.outer(sigma, sigma), covariance / np.outer(sigma, sigma), atol=1e-3)
+    assert np.allclose(many.state.correction / timed_survey.SIGMA, few.state.correction / timed_survey.SIGMA, atol=5e-3)
+
+
+def test_an_adjustment_of_many_points(monkeypatch):
+    module = __import__("sys").modules[adjust_module.__module__]
+    survey = timed_survey.make_survey(10, 12, seed=41)
+    settings = AdjustmentSettings(line_period_s=timed_survey.LINE_S, n_draws=60, n_samples=200)
+    few = adjust(survey, timed_survey.CAMERA, timed_survey.POSE, settings=settings)
+    monkeypatch.setattr(module, "MANY_POINTS", 11)
+    many = adjust(survey, timed_survey.CAMERA, timed_survey.POSE, settings=settings)
+    assert np.all(np.abs(many.pose - few.pose) < 0.2 * few.sigma)
+    assert np.allclose(many.sigma, few.sigma, rtol=0.15)
+    assert many.diagnostics.converged
