@@ -5,10 +5,16 @@ independent, `normal` and `solve` find the minimum of chi squared, `reml` the le
 sure the pose is.
 """
 
-from linepose.adjustment.adjust import adjust
-from linepose.adjustment.levels import LevelPriors, Levels
-from linepose.adjustment.measurements import KnownPoints
-from linepose.adjustment.result import Adjustment, Diagnostics
-from linepose.adjustment.settings import AdjustmentSettings
+from pathlib import Path
+
+from linepose.geometry.compiled_cache import forget_outdated
+
+forget_outdated(Path(__file__).parent)
+
+from linepose.adjustment.adjust import adjust  # noqa: E402
+from linepose.adjustment.levels import LevelPriors, Levels  # noqa: E402
+from linepose.adjustment.measurements import KnownPoints  # noqa: E402
+from linepose.adjustment.result import Adjustment, Diagnostics  # noqa: E402
+from linepose.adjustment.settings import AdjustmentSettings  # noqa: E402
 
 __all__ = ["Adjustment", "AdjustmentSettings", "Diagnostics", "KnownPoints", "LevelPriors", "Levels", "adjust"]
