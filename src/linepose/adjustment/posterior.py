@@ -14,7 +14,7 @@ from scipy.special import logsumexp
 from linepose.adjustment.importance import smoothed_weights
 from linepose.adjustment.normal import N_POSE, trailing_inverse
 from linepose.adjustment.proposal import Proposal, split_at_mode
-from linepose.adjustment.reml import Restricted
+from linepose.adjustment.reml import NOTHING, Restricted
 from linepose.arrays import Floats
 
 STAGE_SHARES: Final = (0.25, 0.25, 0.5)  # of the draws
@@ -97,6 +97,9 @@ def _components(restricted: Restricted, logs: Floats) -> _Drawn:
     for k, row in enumerate(logs):
         done = restricted.done(row)
         density[k] = restricted.negative_log_density_of(done, row)
+        if density[k] >= NOTHING:  # of no weight, but it has to be a normal distribution
+            mean[k], covariance[k] = 0.0, np.eye(N_POSE)
+            continue
         n = len(done.upper) - 1
         block = np.triu(done.upper[n - N_POSE : n, n - N_POSE : n])
         covariance[k] = trailing_inverse(done.upper, N_POSE)

@@ -23,7 +23,7 @@ from linepose.adjustment.solve import Model, pass_at
 from linepose.arrays import Floats
 
 LOG_RANGE: Final = (-12.0, 14.0)  # of a level's logarithm
-_WORST: Final = 1e10  # in place of infinity, where the density is zero
+NOTHING: Final = 1e10  # in place of infinity, where the density is zero
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Restricted:
     def negative_log_density_of(self, done: Pass, free_logs: Floats) -> float:
         """The same from a pass that is done; a large number where the density is zero."""
         value = 0.5 * (done.chi_squared + done.log_determinant) - self._log_prior(free_logs)
-        return value if np.isfinite(value) else _WORST
+        return value if np.isfinite(value) else NOTHING
 
     def _log_prior(self, free_logs: Floats) -> float:
         estimated = np.zeros(N_LEVELS)
@@ -73,7 +73,7 @@ class Restricted:
         levels = levels_from_log(logs)
         process, done = pass_at(self.measurements, self.model, levels, self.weights)
         value = self.negative_log_density_of(done, free_logs)
-        if value >= _WORST:
+        if value >= NOTHING:
             return value, np.zeros(len(free_logs))
         slopes = slopes_of_density(self.measurements.structure, self.model.image, process, levels, self.weights, done)
         by_logs = 0.5 * slopes.by_level

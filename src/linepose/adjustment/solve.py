@@ -119,12 +119,12 @@ def solve(
     floor, steps, converged = damping, 0, False
     structure = measurements.structure
     while True:
-        step = _step(done, damping, pose_held)
-        if not np.all(np.isfinite(step)):
+        if not np.isfinite(done.log_determinant):
             raise EstimationError(
                 "adjustment: singular normal equations; add observations from other directions, or drop points that "
                 "are seen from one direction only"
             )
+        step = _step(done, damping, pose_held)
         dual = unwhiten(done.factor, whitened_residual(done, step))
         correction, z, q = corrections(structure, process, model.linearised, levels, weights, dual)
         gain = done.chi_squared_before - _after(done, step)

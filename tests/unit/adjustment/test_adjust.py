@@ -118,6 +118,16 @@ def test_control_points_are_used(survey):
     assert np.all(found.sigma < 1.05 * without.sigma)
 
 
+def test_views_from_one_and_the_same_place_say_nothing_of_points(survey):
+    one = survey.select([4])
+    fields = ("u_px", "position_m", "euler_rad", "covariance", "nav_gap_s")
+    twice = {name: np.concatenate([getattr(one, name)] * 2) for name in fields}
+    time = np.concatenate([one.time_us, one.time_us + 60_000_000])
+    both = replace(one, number=np.array([1, 2]), time_us=time, **twice)
+    with pytest.raises(EstimationError, match="singular"):
+        adjust(both, CAMERA, hand(), settings=QUICK)
+
+
 def test_a_zero_covariance_is_a_perfect_navigation(survey):
     found = adjust(replace(survey, covariance=0 * survey.covariance), CAMERA, hand(0.02), settings=QUICK)
     assert np.all(np.isfinite(found.covariance))
