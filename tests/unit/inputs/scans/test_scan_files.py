@@ -7,8 +7,9 @@ import pytest
 from PIL import Image
 
 from linepose.errors import InputError
-from linepose.inputs.scans import scan_files
-from linepose.inputs.scans.scan_files import Scan, read_scan, spectral_mean
+from linepose.inputs.scans import envi_data
+from linepose.inputs.scans.envi_data import spectral_mean
+from linepose.inputs.scans.scan_files import Scan, read_scan
 
 START_US = 1_466_000_000_000_000
 AXES = {"bil": (0, 2, 1), "bip": (0, 1, 2), "bsq": (2, 0, 1)}
@@ -55,14 +56,14 @@ def test_mean_over_bands_of_every_layout(tmp_path, cube, interleave, dtype, byte
 @pytest.mark.parametrize("interleave", AXES)
 def test_many_chunks_give_the_same_mean(tmp_path, cube, interleave, monkeypatch):
     path = write_envi(tmp_path, cube, interleave)
-    monkeypatch.setattr(scan_files, "_CHUNK_BYTES", 3 * cube[0].size * 2)
+    monkeypatch.setattr(envi_data, "_CHUNK_BYTES", 3 * cube[0].size * 2)
     np.testing.assert_allclose(spectral_mean(path), cube.mean(axis=2), rtol=1e-6)
 
 
 _GROWTH = """
 import sys
 from pathlib import Path
-from linepose.inputs.scans.scan_files import spectral_mean
+from linepose.inputs.scans.envi_data import spectral_mean
 def peak_mb():
     return int(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]) / 1024
 before = peak_mb()
@@ -122,16 +123,16 @@ def test_channels_of_a_coloured_image_are_averaged(tmp_path):
         ({"lines": 24}, r"2530 bytes, truncated, expected 2640 bytes \(24 lines x 11 samples x 5 bands\)"),
         ({"lines": 22}, "2530 bytes, longer than its header says, expected 2420"),
         ({"header_offset": 8}, "2530 bytes, truncated, expected 2538"),
-        ({"lines": 10**15}, "lines: found 1000000000000000, expected 1 to 10000000"),
+        ({"lines": 10**15}, "lines: found 1000000000000000, expected 0 to 10000000"),
         ({"lines": 9_000_000, "samples": 90_000}, "9000000 lines of 90000 samples, expected at most"),
-        ({"samples": -11}, "samples: found -11"),
+        ({"samples": -11}, "line 2, samples: found -11, expected 1 to"),
         ({"bands": 0}, "bands: found 0"),
         ({"bands": "many"}, "bands: found 'many', expected a whole number"),
         ({"samples": None}, "samples: found no such key"),
         ({"data_type": 6}, "data type: found 6, expected one of ENVI's types"),
-        ({"data_type": "x"}, "data type: found x"),
+        ({"data_type": "x"}, "data type: found 'x'"),
         ({"interleave": "bix"}, "interleave: found 'bix'"),
-        ({"byte_order": None}, "byte order: found None"),
+        ({"byte_order": 2}, "byte order: found 2"),
         ({"file_type": "ENVI Spectral Library"}, "file type: found 'ENVI Spectral Library'"),
     ],
 )
@@ -143,7 +144,7 @@ def test_header_that_cannot_be_right(tmp_path, cube, changes, told):
 
 def test_absurd_size_is_refused_before_memory_is_taken(tmp_path, cube, monkeypatch):
     path = write_envi(tmp_path, cube, lines=9_999_999, samples=50)
-    monkeypatch.setattr(scan_files.np, "empty", lambda *_, **__: pytest.fail("memory taken"))
+    monkeypatch.setattr(envi_data.np, "empty", lambda *_, **__: pytest.fail("memory taken"))
     with pytest.raises(InputError, match="truncated"):
         spectral_mean(path)
 
@@ -151,7 +152,7 @@ def test_absurd_size_is_refused_before_memory_is_taken(tmp_path, cube, monkeypat
 def test_missing_data_file(tmp_path, cube):
     path = write_envi(tmp_path, cube)
     (tmp_path / "scan.img").unlink()
-    with pytest.raises(InputError, match=r"scan\.hdr: found no data file, expected scan\.bil, \.img, .* beside it"):
+    with pytest.raises(InputError, match=r"scan\.hdr: found no data file, expected scan\.img, \.dat, .* beside it"):
         read_scan(path)
 
 

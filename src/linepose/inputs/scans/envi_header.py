@@ -1,0 +1,170 @@
+"""ENVI headers as instruments and programs write them: `key = value` in any order, case and spacing.
+
+Keys that ENVI itself does without (`byte order`, `header offset`, `file type`) may be missing. Text that is not UTF-8,
+byte order marks, comments (`;`), blank lines and lists over many lines are read; a fault is told with its line.
+"""
+
+import codecs
+import logging
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal, cast
+
+from linepose.errors import InputError
+
+Interleave = Literal["bil", "bip", "bsq"]
+
+_LARGEST: Final = {"lines": 10_000_000, "samples": 100_000, "bands": 10_000}
+_LARGEST_HEADER_BYTES: Final = 50_000_000
+_LARGEST_OFFSET_BYTES: Final = 2**40
+_REAL_TYPES: Final = {1, 2, 3, 4, 5, 12, 13, 14, 15}  # ENVI's codes of numbers that are not complex
+_ONE_BYTE: Final = 1  # ENVI's code of numbers whose byte order does not matter
+_INTERLEAVES: Final = ("bil", "bip", "bsq")
+_NO_IMAGE: Final = ("library", "virtual", "mosaic", "meta", "tiff", "jpeg", "png", "nitf", "hdf")  # in a `file type`
+_MARKS: Final = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
+_BRIEFLY: Final = 60
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class EnviHeader:
+    """Layout of an ENVI data file; `lines` is 0 where the recording was broken off and the data's size says it.
+
+    `data_type` is ENVI's code, `byte_order` 0 (little-endian) or 1, `offset` in bytes.
+    """
+
+    lines: int
+    samples: int
+    bands: int
+    data_type: int
+    interleave: Interleave
+    byte_order: int
+    offset: int
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """Text of a value, and the line (counted from 1) on which its key stands."""
+
+    text: str
+    line: int
+
+
+def read_envi_header(path: Path) -> EnviHeader:
+    """The layout that a header file describes; raises InputError naming the line and what is wrong with it."""
+    entries = _entries(_text(path), path)
+    frames = [name for name in ("major frame offsets", "minor frame offsets") if name in entries]
+    for name in frames:
+        if re.search(r"[1-9]", entries[name].text):
+            raise _fault(entries, name, path, "0, 0", "save the scan without frame offsets")
+    _check_file_type(entries, path)
+    sizes = {key: _whole(entries, key, path, int(key != "lines"), most) for key, most in _LARGEST.items()}
+    data_type = _whole(entries, "data type", path, 0, 255)
+    if data_type not in _REAL_TYPES:
+        expected = f"one of ENVI's types {', '.join(map(str, sorted(_REAL_TYPES)))}"
+        raise _fault(entries, "data type", path, expected, "convert the scan, for example to uint16 (12)")
+    interleave = _interleave(entries, sizes["bands"], path)
+    byte_order = _whole(entries, "byte order", path, 0, 1) if "byte order" in entries else 0
+    offset = _whole(entries, "header offset", path, 0, _LARGEST_OFFSET_BYTES) if "header offset" in entries else 0
+    missing = [key for key in ("byte order", "header offset") if key not in entries]
+    if data_type == _ONE_BYTE and "byte order" in missing:
+        missing.remove("byte order")
+    if missing:
+        log.warning("%s: no %s: read as 0, as ENVI does", path, " and no ".join(missing))
+    return EnviHeader(**sizes, data_type=data_type, interleave=interleave, byte_order=byte_order, offset=offset)
+
+
+def _text(path: Path) -> str:
+    with path.open("rb") as file:
+        content = file.read(_LARGEST_HEADER_BYTES + 1)
+    if len(content) > _LARGEST_HEADER_BYTES:
+        found, expected = f"more than {_LARGEST_HEADER_BYTES} bytes", "an ENVI header"
+        raise InputError(str(path), found, expected, "restore the header, or correct source.scans")
+    encoding = next((name for mark, name in _MARKS.items() if content.startswith(mark)), "utf-8")
+    try:
+        return content.decode(encoding)
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
+
+
+def _entries(text: str, path: Path) -> dict[str, _Entry]:
+    """Values by their keys in lower case; raises InputError where the text is no header, or gives a key two values."""
+    lines = [line.strip() for line in re.split(r"\r\n|\r|\n", text)]
+    first = next((row for row, line in enumerate(lines) if line), 0)
+    if not re.match(r"ENVI\b", lines[first], re.IGNORECASE):
+        raise InputError(
+            f"{path}, line {first + 1}",
+            "no ENVI header",
+            "the word ENVI",
+            "restore the header, or correct source.scans",
+        )
+    entries: dict[str, _Entry] = {}
+    row = first + 1
+    while row < len(lines):
+        line, start = lines[row], row + 1
+        row += 1
+        if line.startswith(";") or "=" not in line:
+            continue
+        key, value = (part.strip() for part in line.split("=", 1))
+        key = " ".join(key.lower().replace("_", " ").split())
+        if value.startswith("{"):
+            parts = [value]
+            while "}" not in parts[-1] and row < len(lines):
+                if not lines[row].startswith(";"):
+                    parts.append(lines[row])
+                row += 1
+            if "}" not in parts[-1]:
+                raise InputError(f"{path}, line {start}, {key}", "a list without an end", "}", "restore the header")
+            value = "\n".join(parts)
+        else:
+            value = value.split(";", 1)[0].strip().strip("\"'")
+        entry = entries.setdefault(key, _Entry(value, start))
+        if key in _USED and entry.text.lower() != value.lower():
+            place, found = f"{path}, line {start}, {key}", repr(value[:_BRIEFLY])
+            expected = f"one value; line {entry.line} says {entry.text[:_BRIEFLY]!r}"
+            raise InputError(place, found, expected, "remove the line that is wrong")
+    return entries
+
+
+_USED: Final = {*_LARGEST, "data type", "interleave", "byte order", "header offset", "file type"}
+
+
+def _check_file_type(entries: dict[str, _Entry], path: Path) -> None:
+    """Words that programs make up (ENVI, PCI, ...) mean the plain image; what surely is none is refused."""
+    if "file type" in entries and any(word in entries["file type"].text.lower() for word in _NO_IMAGE):
+        raise _fault(entries, "file type", path, "ENVI Standard", "convert the scan")
+
+
+def _interleave(entries: dict[str, _Entry], n_bands: int, path: Path) -> Interleave:
+    """The order of the values; of one band, all orders are the same."""
+    if "interleave" not in entries and n_bands == 1:
+        return "bil"
+    if "interleave" not in entries:
+        raise InputError(
+            f"{path}: interleave", "no such key", f"one of {', '.join(_INTERLEAVES)}", "restore the header"
+        )
+    found = entries["interleave"].text.lower()
+    if found not in _INTERLEAVES:
+        raise _fault(entries, "interleave", path, f"one of {', '.join(_INTERLEAVES)}", "restore the header")
+    return cast("Interleave", found)
+
+
+def _whole(entries: dict[str, _Entry], key: str, path: Path, least: int, most: int) -> int:
+    """A whole number of a key that is needed, within these bounds."""
+    if key not in entries:
+        raise InputError(f"{path}: {key}", "no such key", "a whole number", "restore the header")
+    match = re.fullmatch(r"([+-]?\d{1,30})(\.0*)?", entries[key].text)
+    if match is None:
+        raise _fault(entries, key, path, "a whole number", "restore the header")
+    number = int(match[1])
+    if not least <= number <= most:
+        raise _fault(entries, key, path, f"{least} to {most}", "restore the header")
+    return number
+
+
+def _fault(entries: dict[str, _Entry], key: str, path: Path, expected: str, remedy: str) -> InputError:
+    entry = entries[key]
+    found = entry.text if re.fullmatch(r"[+-]?\d+", entry.text) else repr(entry.text)
+    return InputError(f"{path}, line {entry.line}, {key}", found[:_BRIEFLY], expected, remedy)
