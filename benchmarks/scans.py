@@ -39,7 +39,7 @@ START_US = 1_466_000_000_000_000
 READ = """
 import sys, time
 from pathlib import Path
-from linepose.extraction.scans import read_scan
+from linepose.inputs.scans.scan_files import read_scan
 def peak_mb():
     status = Path("/proc/self/status").read_text()
     return int(status.split("VmHWM:")[1].split()[0]) / 1024

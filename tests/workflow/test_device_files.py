@@ -11,8 +11,8 @@ from tiny_project import ROOT, STUDY, TINY, Project
 from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
 
 sys.path.insert(0, str(ROOT / "tests"))
-from unit.formats import novatel_writer, writers
-from unit.formats.drive import ORIGIN, drive_of
+from unit.inputs import novatel_writer, writers
+from unit.inputs.drive import ORIGIN, drive_of
 
 pytestmark = pytest.mark.workflow
 

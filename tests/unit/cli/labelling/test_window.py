@@ -253,7 +253,7 @@ from pathlib import Path
 
 from matplotlib import pyplot as plt
 
-from linepose.labelling import label
+from linepose.cli.labelling import label
 
 scan, labels, *places = sys.argv[1:]
 u0, line0, u1, line1 = (float(one) for one in places)
