@@ -53,7 +53,7 @@ def refined_points(
         if mine.empty:
             log.warning("%s: no label: left out", path)
             continue
-        scan = _read(path, n_pixels, line_times)
+        scan = read_scan(path, line_times, n_pixels)
         check_within(mine, scan, str(path))
         found = refine_points(refine, scan.intensity, mine[["u_px", "line"]])
         for row in np.flatnonzero(np.isnan(found[:, 0]))[:1]:
@@ -92,16 +92,8 @@ def detected_in(
 ) -> Iterator[tuple[int, Path, Scan, Detection]]:
     """Each scan's number, path, lines and what is detected in it, one after the other."""
     for number, path in scans.items():
-        scan = _read(path, n_pixels, line_times)
+        scan = read_scan(path, line_times, n_pixels)
         yield number, path, scan, detect(scan, refine)
-
-
-def _read(path: Path, n_pixels: int, line_times: LineTimes | None) -> Scan:
-    scan = read_scan(path, line_times)
-    if scan.intensity.shape[1] != n_pixels:
-        found, expected = f"{scan.intensity.shape[1]} pixels a line", f"{n_pixels}, as camera.n_pixels says"
-        raise InputError(str(path), found, expected, "correct camera.n_pixels, or restore the scan")
-    return scan
 
 
 def scan_points(number: int, scan: Scan, point: NDArray[np.int64], position: Floats) -> pd.DataFrame:

@@ -16,7 +16,7 @@ from spectral.io.spyfile import SpyFile
 
 from linepose.errors import InputError
 from linepose.inputs.scans.envi_header import EnviHeader, read_envi_header
-from linepose.inputs.scans.image_size import check_image_size
+from linepose.inputs.scans.image_size import check_image_size, check_width
 
 _CHUNK_BYTES: Final = 64_000_000
 _BAND_AXES: Final = {"bil": 1, "bip": 2, "bsq": 0}  # axis of the bands in the file
@@ -59,13 +59,14 @@ class EnviFile:
         return np.asarray(image.open_memmap(interleave="source"))
 
 
-def spectral_mean(path: Path) -> NDArray[np.float32]:
+def spectral_mean(path: Path, n_pixels: int | None = None) -> NDArray[np.float32]:
     """Mean over the bands of an ENVI file; (L, P). The data are mapped, never read as a whole.
 
-    Raises InputError where the header is not one, or contradicts the data file.
+    Raises InputError where the header is not one, contradicts the data file, or is not `n_pixels` wide.
     """
     file = open_envi(path)
     layout = file.layout
+    check_width(layout.samples, n_pixels, path)
     mean = np.empty((layout.lines, layout.samples), dtype=np.float32)
     accumulator = _accumulator(file.dtype, layout.bands)
     axis = _BAND_AXES[layout.interleave]

@@ -5,7 +5,6 @@ optional heading; linepose.inputs.scans.line_times reads what devices write inst
 size is checked before memory is taken for it.
 """
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,17 +12,15 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.number_files import check_microseconds
 from linepose.inputs.scans.envi_data import open_envi, spectral_mean
-from linepose.inputs.scans.image_size import check_image_size
+from linepose.inputs.scans.pictures import picture_size, read_picture
 
 Intensity = NDArray[np.float32]
 
-_GREY_MODES: Final = {"L", "I", "I;16", "I;16B", "F", "RGB"}
 _BRIEFLY: Final = 60
 
 
@@ -45,25 +42,25 @@ class Scan:
 LineTimes = Callable[[Path, int], NDArray[np.int64]]  # time stamps (us) of a scan file of so many lines
 
 
-def read_scan(path: Path, line_times: LineTimes | None = None) -> Scan:
+def read_scan(path: Path, line_times: LineTimes | None = None, n_pixels: int | None = None) -> Scan:
     """The scan of an ENVI header (.hdr), PNG or TIFF file, with the time stamps that `line_times` finds for it.
 
     Without, they stand in `NAME-times.csv`. Raises InputError where a file is missing, truncated, of an unsupported
-    kind, or contradicts another.
+    kind, contradicts another, or is not `n_pixels` wide, which is told before pixels are read.
     """
-    intensity = read_intensity(path)
+    intensity = read_intensity(path, n_pixels)
     times = line_times(path, len(intensity)) if line_times else read_line_times(times_path(path), len(intensity))
     return Scan(intensity, times, path.stem)
 
 
-def read_intensity(path: Path) -> Intensity:
+def read_intensity(path: Path, n_pixels: int | None = None) -> Intensity:
     """Mean intensities (L, P) of a scan file, without its time stamps; raises InputError like `read_scan`."""
     if not path.is_file():
         raise InputError(str(path), "no such file", "a scan", "restore it, or correct source.scans")
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(str(path), f"file type {path.suffix!r}", f"one of {', '.join(_READERS)}", "convert the scan")
-    return reader(path)
+    return reader(path, n_pixels)
 
 
 def scan_size(path: Path) -> tuple[int, int]:
@@ -75,14 +72,7 @@ def scan_size(path: Path) -> tuple[int, int]:
         return layout.lines, layout.samples
     if path.suffix.lower() not in _READERS:
         raise InputError(str(path), f"file type {path.suffix!r}", f"one of {', '.join(_READERS)}", "convert the scan")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-            with Image.open(path) as image:
-                return image.height, image.width
-    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, SyntaxError, ValueError) as error:
-        found = " ".join(str(error).split())
-        raise InputError(str(path), found, "a whole PNG or TIFF file", "restore the scan") from None
+    return picture_size(path)
 
 
 def times_path(path: Path) -> Path:
@@ -132,31 +122,9 @@ def check_line_times(times: NDArray[np.int64], n_lines: int, path: Path, heading
         raise InputError(place, f"time {times[row]}", expected, "correct the camera's clock or remove the lines")
 
 
-def read_image(path: Path) -> Intensity:
-    """Intensities (L, P) of a PNG or TIFF file, the mean of the channels of a coloured one; lines run downwards.
-
-    Raises InputError where the file is broken, too large or of an unsupported kind.
-    """
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the size is checked here
-            image = Image.open(path)
-        with image:
-            check_image_size(image.height, image.width, path)
-            if image.mode not in _GREY_MODES:
-                raise InputError(
-                    str(path), f"pixel format {image.mode}", "grey or RGB", "convert the scan to 8 or 16 bit grey"
-                )
-            values = np.asarray(image, dtype=np.float32)
-    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, SyntaxError, ValueError) as error:
-        found = " ".join(str(error).split())
-        raise InputError(str(path), found, "a whole PNG or TIFF file", "restore the scan") from None
-    return values.mean(axis=2, dtype=np.float32) if values.ndim == 3 else values
-
-
-_READERS: Final[dict[str, Callable[[Path], Intensity]]] = {
+_READERS: Final[dict[str, Callable[[Path, int | None], Intensity]]] = {
     ".hdr": spectral_mean,
-    ".png": read_image,
-    ".tif": read_image,
-    ".tiff": read_image,
+    ".png": read_picture,
+    ".tif": read_picture,
+    ".tiff": read_picture,
 }
