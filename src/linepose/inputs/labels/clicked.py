@@ -18,7 +18,10 @@ _INTERLEAVES: Final = {".bil", ".bip", ".bsq"}
 
 @dataclass(frozen=True)
 class Clicked:
-    """Text and place (x, y) of a label, from the corner of a picture of this name and width; `where` for messages."""
+    """Text and place (x, y) of a label, from the corner of a picture of this name and width; `where` for messages.
+
+    `given` are the other places that may hold the point's id: name ("group_id") and text.
+    """
 
     text: str
     x: float
@@ -26,6 +29,7 @@ class Clicked:
     picture: str
     width: int | None
     where: str
+    given: tuple[tuple[str, str], ...] = ()
 
 
 def labels_of(clicked: Sequence[Clicked], scans: Mapping[int, Path], n_pixels: int) -> pd.DataFrame:
@@ -63,12 +67,29 @@ def _observations(scans: Mapping[int, Path]) -> dict[str, int]:
 
 
 def point_of(clicked: Clicked) -> int:
-    """The point's id in a label's text ("7", "point 7", "p07"); raises InputError where there is not just one."""
-    numbers = [int(number) for number in re.findall(r"\d+", clicked.text)]
-    if len(numbers) != 1 or numbers[0] >= N_POINTS:
-        remedy = "write the point's id in the label, or remove it"
-        raise InputError(clicked.where, f"label {clicked.text!r}", f"one number from 0 to {N_POINTS - 1}", remedy)
-    return numbers[0]
+    """The point's id: a number that `given` holds, or at the end of the label ("7", "point 7", "p07").
+
+    No other digit counts. Raises InputError where there is no id, or two that differ.
+    """
+    found: dict[str, int] = {}
+    expected = f"one number from 0 to {N_POINTS - 1}"
+    for place, text in clicked.given:
+        if not re.fullmatch(r"\d{1,9}", text.strip()):
+            raise InputError(clicked.where, f"{place} {text!r}", expected, "write the point's id there, or clear it")
+        found[place] = int(text)
+    of_label = re.fullmatch(r"(?:[^\W\d]\D*|#)?(\d{1,9})", clicked.text.strip())
+    if of_label:
+        found["label"] = int(of_label[1])
+    if len(set(found.values())) > 1:
+        told = " and ".join(f"{place} {number}" for place, number in found.items())
+        raise InputError(clicked.where, told, "one id of the point", "keep the point's id in one of them")
+    number = next(iter(found.values()), N_POINTS)
+    if number >= N_POINTS:
+        places = {"label": clicked.text, **dict(clicked.given)}
+        told = ", ".join(f"{place} {text!r}" for place, text in places.items())
+        remedy = "write the point's id in the label, LabelMe's group_id or CVAT's attribute id, or remove it"
+        raise InputError(clicked.where, told, expected, remedy)
+    return number
 
 
 def _name(file: str) -> str:

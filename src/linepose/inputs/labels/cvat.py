@@ -1,10 +1,22 @@
-"""CVAT's XML for images 1.1: elements `points` with one place each; the label, or an attribute, names the point."""
+"""CVAT's XML for images 1.1: elements `points` with one place each, alone or in skeletons.
 
+The attribute `id` (or `point`, `point_id`), or the label, names the point. Points that are marked as outside the
+picture, of which CVAT keeps the last place, are no labels.
+"""
+
+import logging
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Final
 from xml.etree import ElementTree
 
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked
+
+_IDS: Final = {"id", "point", "point_id", "point id"}
+_HELPERS: Final = {"box", "polygon", "polyline", "mask", "ellipse", "cuboid"}
+
+log = logging.getLogger(__name__)
 
 
 def read_cvat(path: Path) -> list[Clicked]:
@@ -19,11 +31,25 @@ def read_cvat(path: Path) -> list[Clicked]:
     if root.find("track") is not None:
         expected, remedy = "CVAT for images 1.1: <image>", "export the task in that format"
         raise InputError(str(path), "an element <track>, as of a video", expected, remedy)
+    shapes = [(image, shape) for image in root.iter("image") for shape in _shapes(image)]
+    seen = [(image, shape) for image, shape in shapes if shape.get("outside") != "1"]
+    points = [(image, shape) for image, shape in seen if shape.tag == "points"]
+    if len(shapes) > len(points):
+        outside, others = len(shapes) - len(seen), len(seen) - len(points)
+        log.warning("%s: passed over: %d shapes outside their pictures, %d that are no points", path, outside, others)
+    place = {shape: number for image in root.iter("image") for number, shape in enumerate(image.iter("points"), 1)}
     return [
-        _point(element, f"{path}, image {image.get('name')}, points {number}", image)
-        for image in root.iter("image")
-        for number, element in enumerate(image.iter("points"), 1)
+        _point(shape, f"{path}, image {image.get('name')}, points {place[shape]}", image) for image, shape in points
     ]
+
+
+def _shapes(image: ElementTree.Element) -> Iterator[ElementTree.Element]:
+    """Shapes of one picture; of a skeleton its points, or the whole of it where that is outside."""
+    for shape in image:
+        if shape.tag == "skeleton" and shape.get("outside") != "1":
+            yield from _shapes(shape)
+        elif shape.tag in {"points", "skeleton", *_HELPERS}:
+            yield shape
 
 
 def _point(element: ElementTree.Element, where: str, image: ElementTree.Element) -> Clicked:
@@ -36,10 +62,10 @@ def _point(element: ElementTree.Element, where: str, image: ElementTree.Element)
     if len(places) > 1:
         remedy = "draw each point as a shape of its own"
         raise InputError(where, f"{len(places)} places in one shape", "one", remedy)
-    return Clicked(_text(element), x, y, image.get("name", ""), width, where)
+    return Clicked(element.get("label", ""), x, y, image.get("name", ""), width, where, _ids(element))
 
 
-def _text(element: ElementTree.Element) -> str:
-    """The label where it has a number, else the first attribute that has one."""
-    texts = [element.get("label", ""), *(attribute.text or "" for attribute in element.iter("attribute"))]
-    return next((text for text in texts if any(letter.isdigit() for letter in text)), texts[0])
+def _ids(element: ElementTree.Element) -> tuple[tuple[str, str], ...]:
+    """The attributes that are named as the point's id and are filled in."""
+    named = ((one.get("name", ""), (one.text or "").strip()) for one in element.iter("attribute"))
+    return tuple((f"attribute {name}", text) for name, text in named if name.strip().lower() in _IDS and text)

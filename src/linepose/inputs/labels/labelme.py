@@ -1,15 +1,18 @@
-"""LabelMe's JSON files, one a picture: shapes of the type "point", their labels naming the point."""
+"""LabelMe's JSON files, one a picture: shapes of the type "point", their group_id or label naming the point."""
 
 import json
+import logging
 from pathlib import Path
 from typing import Any
 
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked
 
+log = logging.getLogger(__name__)
+
 
 def read_labelme(path: Path) -> list[Clicked]:
-    """The points of one file; raises InputError where it is not LabelMe's, or has a shape that is no point."""
+    """The points of one file, other shapes passed over; raises InputError where it is not LabelMe's."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
@@ -18,18 +21,19 @@ def read_labelme(path: Path) -> list[Clicked]:
         remedy = "save the labels with LabelMe, or correct source.labels"
         raise InputError(str(path), "JSON without shapes", "LabelMe's JSON", remedy)
     picture, width = content.get("imagePath") or path.name, content.get("imageWidth")
-    return [
-        _point(shape, f"{path}, shape {number}", picture, width) for number, shape in enumerate(content["shapes"], 1)
-    ]
+    shapes = list(enumerate(content["shapes"], 1))
+    points = [(number, one) for number, one in shapes if isinstance(one, dict) and one.get("shape_type") == "point"]
+    if len(shapes) > len(points):
+        log.warning("%s: passed over: %d shapes that are no points", path, len(shapes) - len(points))
+    return [_point(shape, f"{path}, shape {number}", picture, width) for number, shape in points]
 
 
-def _point(shape: Any, where: str, picture: str, width: int | None) -> Clicked:
-    kind = shape.get("shape_type") if isinstance(shape, dict) else None
-    if kind != "point":
-        raise InputError(where, f"a shape of type {kind!r}", "a point", "draw it as a point, or remove it")
+def _point(shape: dict[str, Any], where: str, picture: str, width: int | None) -> Clicked:
+    group = shape.get("group_id")
+    given = () if group is None else (("group_id", str(group)),)
     try:
         (x, y), *rest = shape["points"]
-        clicked = Clicked(str(shape["label"]), float(x), float(y), picture, width, where)
+        clicked = Clicked(str(shape["label"]), float(x), float(y), picture, width, where, given)
     except (KeyError, TypeError, ValueError):
         rest = [None]
     if rest:

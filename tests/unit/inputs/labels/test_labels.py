@@ -72,6 +72,35 @@ def test_cvat_counts_from_the_corner_of_the_first_pixel(tmp_path):
     assert_places(read(tmp_path, "a.xml"))
 
 
+def test_labelme_group_id_names_the_point(tmp_path, caplog):
+    dots = [shape("dot", 10.5, 20.5) | {"group_id": 3}, shape("dot5mm", 50.5, 20.5) | {"group_id": 4}]
+    labelme(tmp_path, "run-01", [*dots, shape("board", 0, 0, "rectangle")])
+    assert read(tmp_path, "run-01.json").to_numpy().tolist() == [[1, 3, 10, 20], [1, 4, 50, 20]]
+    assert "run-01.json: passed over: 1 shapes that are no points" in caplog.text
+
+
+@pytest.mark.parametrize("label", ["dot", "dot5mm", "dot 7"])
+@pytest.mark.parametrize("name", ["id", "ID", "point_id"])
+def test_cvat_attribute_of_its_name_alone_is_the_id(tmp_path, label, name):
+    attributes = f'<attribute name="quality">2</attribute><attribute name="{name}">7</attribute>'
+    cvat(tmp_path / "a.xml", f'<points label="{label}" points="10.50,20.50">{attributes}</points>')
+    assert read(tmp_path, "a.xml").to_numpy().tolist() == [[1, 7, 10, 20]]
+
+
+@pytest.mark.parametrize("skeleton", ["", 'outside="0"'])
+def test_cvat_points_outside_the_picture_are_no_labels(tmp_path, caplog, skeleton):
+    points = (
+        f'<skeleton label="board" source="manual" {skeleton}>'
+        '<points label="0" outside="0" occluded="0" points="10.50,20.50"></points>'
+        '<points label="1" outside="1" occluded="0" points="99.00,99.00"></points></skeleton>'
+        '<skeleton label="board" outside="1"><points label="2" outside="0" points="1,2"></points></skeleton>'
+        '<points label="4" outside="1" points="3,4"/><box label="board" xtl="1"/>'
+    )
+    cvat(tmp_path / "a.xml", points)
+    assert read(tmp_path, "a.xml").to_numpy().tolist() == [[1, 0, 10, 20]]
+    assert "a.xml: passed over: 3 shapes outside their pictures, 1 that are no points" in caplog.text
+
+
 @pytest.mark.parametrize("tool", ["csv", "json", "xml"])
 def test_a_dot_labelled_at_its_middle_is_found_there(tmp_path, drawn, tool):
     """A picture whose dot is known, labelled at its middle as each tool counts: the refinement agrees to a tenth."""
@@ -95,7 +124,16 @@ def test_a_dot_labelled_at_its_middle_is_found_there(tmp_path, drawn, tool):
         ([shape("corner", 1, 1)], {}, r"run-01.json, shape 1: found label 'corner', expected one number from 0 to 14"),
         ([shape("15", 1, 1)], {}, r"found label '15', expected one number from 0 to 14"),
         ([shape("1-2", 1, 1)], {}, r"found label '1-2'"),
-        ([shape("3", 1, 1, "polygon")], {}, r"shape 1: found a shape of type 'polygon', expected a point"),
+        ([shape("3", 1, 1, "polygon")], {}, r"run-01.json: found no label"),
+        ([shape("dot5mm", 1, 1)], {}, r"found label 'dot5mm', expected one number"),
+        ([shape("-3", 1, 1)], {}, r"found label '-3', expected one number"),
+        (
+            [shape("7", 1, 1) | {"group_id": 3}],
+            {},
+            r"shape 1: found group_id 3 and label 7, expected one id of the point",
+        ),
+        ([shape("dot", 1, 1) | {"group_id": 15}], {}, r"found label 'dot', group_id '15', expected one number from 0"),
+        ([shape("dot", 1, 1) | {"group_id": "a"}], {}, r"found group_id 'a', expected one number from 0 to 14"),
         ([shape("3", 1, 1), shape("3", 2, 2)], {}, r"shape 2: found point 3 of .* again, expected each point once"),
         ([shape("3", 1, 1)], {"imageWidth": 320}, r"found a picture 320 pixels wide, expected 640, as camera.n_pixels"),
         (
@@ -126,6 +164,16 @@ def test_wrong_labelme_file_is_one_line(tmp_path, shapes, keys, told):
         ('<points label="3" points="1"/>', {}, r"points 1: found points='1', expected x,y"),
         ('<points label="3" points="nan,1"/>', {}, r"points 1: found place nan, 1.0, expected two numbers"),
         ('<points label="dot" points="1,2"/>', {}, r"found label 'dot', expected one number"),
+        (
+            '<points label="dot" points="1,2"><attribute name="quality">2</attribute></points>',
+            {},
+            r"found label 'dot', expected one number .* CVAT's attribute id",
+        ),
+        (
+            '<points label="3" points="1,2"><attribute name="id">2</attribute></points>',
+            {},
+            r"found attribute id 2 and label 3, expected one id",
+        ),
         ('<box label="3"/>', {}, r"a.xml: found no label"),
         ("", {"root": "opencv"}, r"a.xml: found an element <opencv>, expected CVAT for images 1.1"),
         ("<points", {}, r"a.xml: found .*, expected CVAT's XML"),
