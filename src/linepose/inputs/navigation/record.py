@@ -1,5 +1,6 @@
 """What every reader of a navigation log returns, and the way there from what the devices write."""
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -25,6 +26,8 @@ from linepose.survey.navigation_log import NavigationLog
 
 _FEWEST: Final = 2
 _EARLIEST_US, _LATEST_US = 315_964_800_000_000, 4_102_444_800_000_000  # 1980 to 2100
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -123,6 +126,7 @@ def nearest_rows(time_us: NDArray[np.int64], wanted_us: NDArray[np.int64]) -> ND
 def _joined_poses(parts: Sequence[Poses]) -> Poses:
     for part in parts:
         _check(part)
+    parts = [_without_repeats(part) for part in parts]
     ordered = sorted(parts, key=lambda part: int(part.time_us[0]))
     for before, after in pairwise(ordered):
         if after.time_us[0] <= before.time_us[-1]:
@@ -143,6 +147,23 @@ def _joined_poses(parts: Sequence[Poses]) -> Poses:
     return joined
 
 
+def _without_repeats(part: Poses) -> Poses:
+    """The poses without those that repeat the one before in time and all values: as of loggers that poll too often."""
+    kept = _not_repeated(part.time_us, np.hstack([part.position, part.euler_rad]))
+    if np.all(kept):
+        return part
+    log.warning("%s: %d records that repeat the one before are passed over", part.place, np.count_nonzero(~kept))
+    return Poses(part.time_us[kept], part.position[kept], part.euler_rad[kept], part.place)
+
+
+def _not_repeated(time_us: NDArray[np.int64], values: Floats) -> NDArray[np.bool_]:
+    """Which of times (K,) and values (K, ...) differ from those before them; (K,)."""
+    same = np.all(values[1:] == values[:-1], axis=tuple(range(1, values.ndim)))
+    kept: NDArray[np.bool_] = np.ones(len(time_us), dtype=bool)
+    kept[1:] = ~(same & (np.diff(time_us) == 0))
+    return kept
+
+
 def _check(part: Poses) -> None:
     if not len(part.time_us):
         raise InputError(part.place, "no pose", "a log of poses", "restore the log")
@@ -160,12 +181,13 @@ def _check(part: Poses) -> None:
         remedy = "correct the unit of the angles in source.navigation"
         found = f"roll, pitch, yaw {', '.join(f'{one:g}' for one in part.euler_rad[row])} rad"
         raise InputError(f"{part.place}, record {row + 1}", found, "at most a full turn", remedy)
-    check_increasing(part.time_us, part.place)
+    check_increasing(part.time_us, part.place, _not_repeated(part.time_us, values))
 
 
-def check_increasing(time_us: NDArray[np.int64], place: str) -> None:
-    """Raise InputError naming the first of times (K,) that is not after the one before it."""
-    for row in np.flatnonzero(np.diff(time_us) <= 0)[:1]:
+def check_increasing(time_us: NDArray[np.int64], place: str, checked: NDArray[np.bool_] | None = None) -> None:
+    """Raise InputError naming the first of times (K,) that is not after the one before it, of those `checked` (K,)."""
+    wrong = np.diff(time_us) <= 0
+    for row in np.flatnonzero(wrong if checked is None else wrong & checked[1:])[:1]:
         raise InputError(
             f"{place}, record {row + 2}",
             f"time {time_us[row + 1]} us",
@@ -180,6 +202,8 @@ def _joined_covariances(parts: Sequence[Covariances]) -> NavigationCovariances |
         return None
     time_us = np.concatenate([part.time_us for part in filled])
     covariance = np.concatenate([part.covariance for part in filled])
+    kept = _not_repeated(time_us, covariance)
+    time_us, covariance = time_us[kept], covariance[kept]
     check_increasing(time_us, f"{filled[0].place}, covariances")
     lowest = np.min(np.diagonal(covariance, axis1=1, axis2=2), axis=1)
     for row in np.flatnonzero(~np.all(np.isfinite(covariance), axis=(1, 2)) | (lowest < 0))[:1]:

@@ -67,12 +67,15 @@ _TIMES_ENDINGS: Final = tuple(f"{ending}.times" for ending in sorted(_INTERLEAVE
 
 
 def _headwall(scan: Path, scale: TimeScale) -> tuple[Stamps, Path, int]:
-    """Rows of frame number and microseconds below a heading, in the file of the number in the scan's name."""
-    number = re.search(r"\d+", scan.stem)
-    if number is None:
+    """Rows of frame number and microseconds below a heading, in the file of the number after the scan's `raw_`."""
+    found = set(re.findall(r"(?<![^\W_])raw_(\d+)", scan.stem, re.IGNORECASE))
+    if len(found) != 1:
+        told = "a name with several raw_N" if found else "a name without raw_N"
         expected = "raw_N.hdr, whose time stamps stand in frameIndex_N.txt"
-        raise InputError(str(scan), "a name without a number", expected, "restore the recorder's name")
-    path = _first_file([f"frameIndex_{number.group()}.txt"], scan)
+        raise InputError(
+            str(scan), told, expected, "restore the recorder's name, or put more before it (day_raw_0.hdr)"
+        )
+    path = _first_file([f"frameIndex_{found.pop()}.txt"], scan)
     rows = _rows(path)
     heading = int(rows[0].lower().startswith("frame"))
     times = np.empty(len(rows) - heading, dtype=np.int64)

@@ -90,8 +90,8 @@ def two_topics(path, drive):
 
 def repeated_times(path, drive):
     with writers.Bag(path, 1) as bag:
-        for _ in range(3):
-            bag.odometry("/odometry", drive.time_us[0], [0, 0, 0], IDENTITY, np.eye(6))
+        for row in range(3):
+            bag.odometry("/odometry", drive.time_us[0], [row, 0, 0], IDENTITY, np.eye(6))
 
 
 def cut(path, drive):

@@ -104,7 +104,11 @@ def test_file_without_heading_and_with_semicolons(tmp_path):
             {},
             r"record 1: found roll, pitch, yaw 0.1, -0.2, 90 rad.*correct the unit of the angles",
         ),
-        (table(time_us=[FIRST_US, FIRST_US + 5, FIRST_US + 5]), {}, r"log.csv, record 3: found time"),
+        (
+            table(time_us=[FIRST_US, FIRST_US + 5, FIRST_US + 5], north_m=[1.0, 2.0, 3.0]),
+            {},
+            r"log.csv, record 3: found time",
+        ),
         (
             table(time_us=FIRST_US / 1e6 + np.arange(3)),
             {},
@@ -137,3 +141,13 @@ def test_file_of_another_format_is_one_line(tmp_path, name):
         read_navigation(TableSection(format="table", file=name), tmp_path)
     assert str(error.value).startswith(f"{tmp_path}/{name}: found")
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("coordinates", ["ned", "geodetic"])
+def test_row_that_stands_twice_is_passed_over(tmp_path, caplog, coordinates):
+    sigmas = {"sigma_position": ("north_m", "north_m", "north_m"), "sigma_attitude": ("yaw_rad",) * 3}
+    values = table(time_us=FIRST_US + 10_000 * np.array([0, 1, 2, 2, 3, 4]))
+    record = read(tmp_path, values, coordinates=coordinates, columns=sigmas)
+    np.testing.assert_array_equal(record.log.time_us, FIRST_US + 10_000 * np.arange(5))
+    np.testing.assert_array_equal(record.covariances.time_us, record.log.time_us)
+    assert "log.csv: 1 records that repeat the one before are passed over" in caplog.text

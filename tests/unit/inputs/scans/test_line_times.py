@@ -151,6 +151,20 @@ def test_broken_time_stamps_are_one_line(tmp_path, kind, write, told):
     assert "\n" not in str(error.value)
 
 
-def test_headwalls_scan_needs_a_number(tmp_path):
-    with pytest.raises(InputError, match=r"found a name without a number, expected raw_N.hdr"):
-        times(tmp_path / "board.hdr", time_stamps="headwall")
+@pytest.mark.parametrize("name", ["flight2_raw_2000.hdr", "2_RAW_2000-rd7.hdr"])
+def test_other_numbers_in_headwalls_name_do_not_count(tmp_path, name):
+    frames(tmp_path / "frameIndex_2000.txt")
+    frames(tmp_path / "frameIndex_2.txt", [f"{row}\t{START_US + 60_000_000 + time}" for row, time in enumerate(LINES)])
+    np.testing.assert_array_equal(times(touched(tmp_path / name), time_stamps="headwall"), START_US + LINES)
+
+
+@pytest.mark.parametrize("name", ["board.hdr", "flight2.hdr", "draw_2.hdr"])
+def test_headwalls_scan_needs_its_number(tmp_path, name):
+    frames(tmp_path / "frameIndex_2.txt")
+    with pytest.raises(InputError, match=r"found a name without raw_N, expected raw_N.hdr"):
+        times(tmp_path / name, time_stamps="headwall")
+
+
+def test_headwalls_scan_of_two_numbers_is_told(tmp_path):
+    with pytest.raises(InputError, match=r"found a name with several raw_N"):
+        times(tmp_path / "raw_0_raw_2.hdr", time_stamps="headwall")
