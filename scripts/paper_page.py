@@ -11,7 +11,8 @@ with stage(snakemake) as log:
     from linepose.tables import atomic_write, read_table
 
     tables = {Path(path).stem: read_table(path) for path in snakemake.input.tables}
-    page = render_paper_page(published_sections(read_table(snakemake.input.regression, REGRESSION), tables))
+    sections = published_sections(read_table(snakemake.input.regression, REGRESSION), tables)
+    page = render_paper_page(sections, snakemake.params.left_out)
     with atomic_write(snakemake.output[0]) as path:
         path.write_text(page, encoding="utf-8")
     log.info("%s: %.1f MB", snakemake.output[0], len(page.encode()) / 1e6)

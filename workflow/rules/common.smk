@@ -1,6 +1,5 @@
 import os
 from hashlib import sha256
-from importlib.resources import files
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
@@ -222,13 +221,12 @@ def covered_cells(_):
 
 
 def figure_labels(wildcards):
-    """A figure's title and its number in the paper, for Snakemake's report."""
+    """A figure's title, for Snakemake's report."""
     index = read_table(f"results/{wildcards.platform}/figures/index.parquet")
-    entry = index.set_index("figure").loc[wildcards.figure]
-    return {"figure": entry["title"], "paper": entry["paper_figure"] or "beyond it"}
+    return {"figure": index.set_index("figure").loc[wildcards.figure, "title"]}
 
 
-def drawn_from(wildcards):
+def figure_inputs(wildcards):
     """The results that a platform's figures are drawn from, beside those that every platform has."""
     detected = (
         [f"results/{wildcards.platform}/detected_points.parquet"]
@@ -253,10 +251,3 @@ def other_summaries(_):
         for name, path in summaries_on_disk(Path("results")).items()
         if name not in PLATFORMS
     }
-
-
-def templates_digest():
-    """Digest of the pages' templates, which no import leads to."""
-    templates = files("linepose.output.report") / "templates"
-    texts = sorted((file.name, file.read_bytes()) for file in templates.iterdir())
-    return sha256(repr(texts).encode()).hexdigest()[:16]

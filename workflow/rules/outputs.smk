@@ -10,7 +10,7 @@ rule figures:
         diagnostics="results/{platform}/diagnostics.parquet",
         residuals="results/{platform}/residuals.parquet",
         points="results/{platform}/estimated_points.parquet",
-        experiments=drawn_from,
+        experiments=figure_inputs,
         record=record,
     output:
         files="results/{platform}/figures_files.txt",
@@ -24,8 +24,12 @@ rule figures:
         ),
     log:
         "results/logs/{platform}/figures.log",
+    benchmark:
+        "results/benchmarks/{platform}/figures.tsv"
     conda:
         "../../environment.yml"
+    resources:
+        mem_mb=2000,
     params:
         platform=lambda wildcards: PROJECT.platforms[wildcards.platform].model_dump(
             mode="json"
@@ -59,7 +63,6 @@ rule report:
             mode="json"
         ),
         study=STUDY.model_dump(mode="json", exclude={"platforms"}),
-        templates=templates_digest(),
         code=script_digest("report"),
     script:
         "../../scripts/report.py"
@@ -71,7 +74,7 @@ rule study_report:
     output:
         report(
             "results/report.html",
-            caption="../report/report.rst",
+            caption="../report/study_report.rst",
             category="Report",
             labels={"result": "summary of all platforms"},
         ),
@@ -83,7 +86,6 @@ rule study_report:
         others=other_summaries,
         study=STUDY.model_dump(mode="json", exclude={"platforms"}),
         further_pages=FURTHER_PAGES,
-        templates=templates_digest(),
         code=script_digest("study_report"),
     script:
         "../../scripts/study_report.py"

@@ -11,11 +11,15 @@ rule simulate:
         truth="results/{platform}/truth.parquet",
     log:
         "results/logs/{platform}/simulate.log",
+    benchmark:
+        "results/benchmarks/{platform}/simulate.tsv"
     wildcard_constraints:
         platform=SIMULATED,
     conda:
         "../../environment.yml"
     threads: 2
+    resources:
+        mem_mb=2000,
     params:
         camera=lambda wildcards: settings(wildcards)["camera"],
         simulation=lambda wildcards: settings(wildcards)["simulation"],
@@ -52,14 +56,19 @@ wildcard_constraints:
 
 rule coverage_cell:
     input:
-        compiled=expand("results/compiled/{noise_model}.txt", noise_model=NOISE_MODELS),
+        compiled="results/compiled/{noise_model}.txt",
     output:
         "results/coverage/cells/{platform}/{regime}/{noise_model}.parquet",
     log:
         "results/logs/coverage/{platform}/{regime}/{noise_model}.log",
+    benchmark:
+        "results/benchmarks/coverage/{platform}/{regime}/{noise_model}.tsv"
     conda:
         "../../environment.yml"
     threads: workflow.cores or 1
+    resources:
+        mem_mb=2000,
+        runtime=600,
     params:
         platform=settings,
         regime=lambda wildcards: STUDY.coverage.regimes[wildcards.regime].model_dump(

@@ -41,7 +41,7 @@ def run(
     arguments = ["--cores", str(cores or "all"), "--quiet", "host", "rules", "--config", f'platforms=["{name}"]']
     outdated = all_outdated(loaded, root, name, snakefile.parent / "scripts")
     if outdated:
-        typer.echo(f"made again: {told(outdated)}", err=True)
+        typer.echo(f"{'would be made again' if dry_run else 'made again'}: {told(outdated)}", err=True)
         wanted = files_of_workflow(snakefile, root, arguments)
         outputs = (place for one in outdated for place in (one.path, one.path.rpartition("/")[0]))  # or its folder
         if forced := sorted(wanted.intersection(outputs)):

@@ -68,6 +68,12 @@ def test_the_page_holds_every_section_and_table():
     assert "http" not in page.replace("http://www.w3.org", "")
 
 
+def test_the_page_names_the_platforms_left_out():
+    sections = published_sections(REGRESSION, {})
+    assert "not held against the paper: field, other." in render_paper_page(sections, ["field", "other"])
+    assert "Left out" not in render_paper_page(sections)
+
+
 def test_a_deviation_other_than_declared_differs():
     other = REGRESSION.assign(passed=[True, False, True, True, True])
     table = published_sections(other, {})[0].tables[0]

@@ -1,4 +1,4 @@
-"""Figure 15: from how far away the search still finds the optimum."""
+"""From how far away the search still finds the optimum."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -97,7 +97,6 @@ FIGURES: Final = (
     FigureEntry(
         "basin",
         "Basin of attraction",
-        "Figure 15",
         "grid of starts over distance and angle, coloured by whether the search found the optimum",
         (
             "basin",

@@ -82,7 +82,6 @@ FIGURES: Final = (
     FigureEntry(
         "consistency",
         "Agreement of disjoint observations",
-        "",
         "cumulative distribution of the distance in sigmas between poses from disjoint observations, by noise model",
         (
             "consistency",

@@ -1,4 +1,4 @@
-"""Figure 10: the sampled posterior of every pair of pose parameters."""
+"""The sampled posterior of every pair of pose parameters."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -117,7 +117,6 @@ FIGURES: Final = (
     FigureEntry(
         "corner",
         "Posterior of the pose",
-        "Figure 10",
         "histograms and contours of every pair of pose parameters with the optimum and the hand measurement marked",
         (
             "mcmc/inliers",

@@ -12,12 +12,12 @@ from linepose.experiments.registry import SECTIONS
 from linepose.pipeline.calibration import Calibration
 from linepose.tables import texts
 
-FIGURES: Final = pa.schema(texts("figure", "title", "paper_figure", "caption", "alt", "left_out"))
+FIGURES: Final = pa.schema(texts("figure", "title", "caption", "alt", "left_out"))
 
 
 @dataclass(frozen=True)
 class FigureEntry:
-    """One figure: file stem, title, the paper's figure or nothing, what it shows, and how it is made.
+    """One figure: file stem, title, what it shows, and how it is made.
 
     `needs` names the results that it is drawn from, as far as the platform has them. `left_out` says in a sentence why
     a platform has none of it, and is empty where it should have one.
@@ -25,7 +25,6 @@ class FigureEntry:
 
     name: str
     title: str
-    paper_figure: str
     shows: str
     needs: tuple[str, ...]
     draw: Callable[[Calibration], Figure]

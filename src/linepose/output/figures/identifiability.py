@@ -79,7 +79,6 @@ FIGURES: Final = (
     FigureEntry(
         "identifiability",
         "What the data say of each parameter",
-        "",
         "bars of posterior over prior sigma of each parameter, and intervals of the inferred levels on their priors",
         (
             "identifiability",

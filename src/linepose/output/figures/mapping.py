@@ -205,7 +205,6 @@ FIGURES: Final = (
     FigureEntry(
         "mapping",
         "Mapping before and after",
-        "Figure 13",
         "the pattern's points projected to its plane before and after the calibration",
         (
             "mapping_summary",
@@ -221,7 +220,6 @@ FIGURES: Final = (
     FigureEntry(
         "angle_error",
         "Effect of an angle error",
-        "Figure 14",
         "the pattern's points projected with the calibrated pose and with one turned by a small angle",
         (
             "mapping_summary",

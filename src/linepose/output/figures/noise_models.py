@@ -75,7 +75,6 @@ FIGURES: Final = (
     FigureEntry(
         "noise_models",
         "Noise models side by side",
-        "",
         "each pose parameter from every set of observations under each noise model, with bars of two sigmas",
         (
             "noise_models",

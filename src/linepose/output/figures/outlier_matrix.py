@@ -1,4 +1,4 @@
-"""Figure 8: the mean error of every observation at each stage of the outlier removal."""
+"""The mean error of every observation at each stage of the outlier removal."""
 
 from typing import Final
 
@@ -86,7 +86,6 @@ FIGURES: Final = (
     FigureEntry(
         "outliers",
         "Outlier removal",
-        "Figure 8",
         "matrix of mean errors, observations across, stages of the removal down, the accepted row framed",
         ("outliers",),
         lambda r: outlier_matrix(r.results.table("outliers", OUTLIERS)),

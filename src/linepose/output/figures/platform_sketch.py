@@ -1,4 +1,4 @@
-"""Figure 12: the sampled poses on a sketch of the platform."""
+"""The sampled poses on a sketch of the platform."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -132,7 +132,6 @@ FIGURES: Final = (
     FigureEntry(
         "platform_sketch",
         "Poses on the platform",
-        "Figure 12",
         "sampled camera positions and optical axes over a sketch of the platform from the side and the front",
         (
             "mcmc/inliers",

@@ -30,7 +30,6 @@ def _render(entry: FigureEntry, calibration: Calibration, folder: Path) -> dict[
     return {
         "figure": entry.name,
         "title": entry.title,
-        "paper_figure": entry.paper_figure,
         "caption": caption,
         "alt": f"{calibration.name}: {entry.shows}.",
         "left_out": left_out,

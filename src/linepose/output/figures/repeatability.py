@@ -93,7 +93,6 @@ FIGURES: Final = (
     FigureEntry(
         "repeatability",
         "Repeatability",
-        "",
         "histogram of the distance between poses from disjoint halves of the observations",
         (
             "splits",

@@ -94,7 +94,6 @@ FIGURES: Final = (
     FigureEntry(
         "residuals_by_observation",
         "Residuals by observation",
-        "",
         "errors along and across the scan line by observation, with their sigmas",
         ("residuals",),
         _residuals("observation"),
@@ -103,7 +102,6 @@ FIGURES: Final = (
     FigureEntry(
         "residuals_by_point",
         "Residuals by point",
-        "",
         "errors along and across the scan line by point of the pattern, with their sigmas",
         ("residuals",),
         _residuals("point"),

@@ -1,4 +1,4 @@
-"""Figure 11: the sampled rotations as an axis on the sphere and an angle about it."""
+"""The sampled rotations as an axis on the sphere and an angle about it."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -146,7 +146,6 @@ FIGURES: Final = (
     FigureEntry(
         "rotation_axis",
         "Rotation axis and angle",
-        "Figure 11",
         "sampled rotation axes on a sphere and close up, and a histogram of the angle",
         (
             "mcmc/inliers",

@@ -125,7 +125,6 @@ FIGURES: Final = (
     FigureEntry(
         "stacked_scan",
         "Stacked scan",
-        "Figure 6",
         "grey images of a few observations' scan lines with the pattern's sheet framed",
         ("points",),
         lambda r: stacked_scan(scan_examples(r, "points")),
@@ -135,7 +134,6 @@ FIGURES: Final = (
     FigureEntry(
         "labelled_points",
         "Points found in the scan",
-        "Figure 7",
         "close-ups of the pattern in scans, each point crossed and numbered",
         ("points",),
         lambda r: points_in_scan(scan_examples(r, "points")),
@@ -145,7 +143,6 @@ FIGURES: Final = (
     FigureEntry(
         "detected_points",
         "Points detected without labels",
-        "",
         "close-ups of the pattern in scans, each detected point crossed and numbered",
         ("detected_points",),
         lambda r: points_in_scan(scan_examples(r, "detected_points")),

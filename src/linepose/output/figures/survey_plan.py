@@ -1,4 +1,4 @@
-"""Figure 5: the survey from above."""
+"""The survey from above."""
 
 from typing import Final
 
@@ -128,7 +128,6 @@ FIGURES: Final = (
     FigureEntry(
         "survey_plan",
         "Survey from above",
-        "Figure 5",
         "map of the observations around the pattern, numbered and coloured by tilt",
         (
             "estimated_points",

@@ -140,7 +140,6 @@ FIGURES: Final = (
     FigureEntry(
         "trace",
         "Trace of the chain",
-        "",
         "each pose parameter over the steps of the chain",
         (
             "diagnostics",
@@ -153,7 +152,6 @@ FIGURES: Final = (
     FigureEntry(
         "autocorrelation",
         "Autocorrelation of the chain",
-        "",
         "autocorrelation of each pose parameter against the lag in steps",
         (
             "mcmc/inliers",

@@ -1,4 +1,4 @@
-"""Figure 9: one standard deviation of each pose parameter against the number of observations."""
+"""One standard deviation of each pose parameter against the number of observations."""
 
 from typing import Final
 
@@ -75,7 +75,6 @@ FIGURES: Final = (
     FigureEntry(
         "uncertainty",
         "Uncertainty against observations",
-        "Figure 9",
         "lines of the sigma of each pose parameter against the number of observations",
         ("uncertainty",),
         lambda r: uncertainty(r.results.table("uncertainty", UNCERTAINTY)),

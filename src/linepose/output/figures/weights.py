@@ -68,7 +68,6 @@ FIGURES: Final = (
     FigureEntry(
         "weights",
         "Weights of the robust noise model",
-        "",
         "bars of each view's weight above a matrix of each point's, observations across",
         ("weights",),
         lambda r: weights(r.results.table("weights", WEIGHTS)),

@@ -24,7 +24,6 @@ class FigureOnPage:
 
     anchor: str
     title: str
-    paper_figure: str
     caption: str
     alt: str
     picture: Picture | None
@@ -47,7 +46,6 @@ def figures_on_page(name: str, folder: Path, index: pd.DataFrame) -> list[Figure
         FigureOnPage(
             anchor=f"{name}-{row['figure']}",
             title=row["title"],
-            paper_figure=row["paper_figure"],
             caption=row["caption"],
             alt=row["alt"],
             picture=None if row["left_out"] else embedded(folder / f"{row['figure']}.png"),
