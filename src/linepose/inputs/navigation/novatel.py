@@ -9,7 +9,10 @@ undulation is added.
 """
 
 import logging
-from collections.abc import Callable, Sequence
+import re
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -28,6 +31,7 @@ Row = tuple[float, ...]
 _SHORT_NAMES: Final = {"INSPVAS": "INSPVA", "INSSTDEVS": "INSSTDEV", "INSCOVS": "INSCOV"}
 _USABLE: Final = {2, 3, 6, 7}  # high variance, good, free (without GNSS), alignment complete
 _SIGMAS: Final = ("latitude", "longitude", "height", "roll", "pitch", "azimuth")
+_ASCII_CUT: Final = re.compile(rb"[#%][^\r\n]*\*[0-9a-fA-F]{8}\n")  # a message whose CR LF became LF
 _KINDS_OF_COVARIANCES: Final = ("INSCOV", "INSSTDEV", "INSPVAX")  # the fullest first
 
 log = logging.getLogger(__name__)
@@ -67,6 +71,20 @@ FORMAT: Final = NavigationFormat("novatel", NovatelSection, read)
 
 def read_messages(path: Path) -> Messages:
     """Every message of a log that a pose or its covariance is read from, short and long forms alike."""
+    with _with_line_ends(path) as framed:
+        rows, read, unusable, unknown = _parsed(framed)
+    if not read:
+        remedy = "give a log of INSPVA or INSPVAX messages, or correct source.navigation.format"
+        raise InputError(str(path), "no NovAtel message", "an ASCII or binary log", remedy)
+    if unusable:
+        log.warning("%s: %d poses without an INS solution are left out", path, unusable)
+    if unknown:
+        log.warning("%s: %d bytes are no whole message; restore the log if it was cut", path, unknown)
+    return Messages(path, rows, unusable, unknown)
+
+
+def _parsed(path: Path) -> tuple[dict[str, list[Row]], int, int, int]:
+    """Rows by message, and the numbers of messages, of poses without a solution, and of bytes that are no message."""
     from novatel_edie import UnknownBytes
     from novatel_edie.oem import FileParser
 
@@ -88,14 +106,25 @@ def read_messages(path: Path) -> Messages:
             continue
         rows.setdefault(name, []).append(_ROW_OF[name](message))
     unknown += int(str(parser.flush()))  # what the file ends with and is no whole message
-    if not read:
-        remedy = "give a log of INSPVA or INSPVAX messages, or correct source.navigation.format"
-        raise InputError(str(path), "no NovAtel message", "an ASCII or binary log", remedy)
-    if unusable:
-        log.warning("%s: %d poses without an INS solution are left out", path, unusable)
-    if unknown:
-        log.warning("%s: %d bytes are no whole message; restore the log if it was cut", path, unknown)
-    return Messages(path, rows, unusable, unknown)
+    return rows, read, unusable, unknown
+
+
+@contextmanager
+def _with_line_ends(path: Path) -> Iterator[Path]:
+    """The log itself, or where ASCII messages end in LF alone, as editors leave them, a copy with CR LF.
+
+    The parser finds messages by CR LF, which the check sum does not cover. Binary messages are kept byte by byte.
+    """
+    with path.open("rb") as file:
+        whole = not any(_ASCII_CUT.fullmatch(line) for line in file)
+    if whole:
+        yield path
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / path.name
+        with path.open("rb") as file, copy.open("wb") as framed:
+            framed.writelines(line[:-1] + b"\r\n" if _ASCII_CUT.fullmatch(line) else line for line in file)
+        yield copy
 
 
 def _most_numerous(files: Sequence[Messages]) -> str:

@@ -157,3 +157,22 @@ def test_logs_that_overlap_are_told(tmp_path, drive):
         InputError, match=r"b.gps: found a log that begins at .*, expected one that begins after the end of"
     ):
         read_navigation(section("*.gps"), tmp_path)
+
+
+LINE = (
+    b"%INSPVASA,2200,302400.0{n}0;2200,302400.0{n}0000000,50.00000000000,8.00000000000,100.0000,"
+    b"0.1000,0.2000,0.3000,1.000000000,2.000000000,40.000000000,INS_SOLUTION_GOOD*{crc}"
+)
+CHECK_SUMS = (b"5975c36e", b"2c437dd7", b"b318be1c", b"c62e00a5", b"56de3fcb")
+
+
+@pytest.mark.parametrize("end", [b"\r\n", b"\n"])
+def test_line_ends_of_ascii_messages_do_not_matter(tmp_path, end):
+    lines = [LINE.replace(b"{n}", b"%d" % n).replace(b"{crc}", crc) for n, crc in enumerate(CHECK_SUMS)]
+    (tmp_path / "run.gps").write_bytes(end.join([*lines, b""]))
+    messages = read_messages(tmp_path / "run.gps")
+    assert messages.unknown_bytes == 0
+    assert messages.path == tmp_path / "run.gps"
+    record = read_navigation(section("run.gps"), tmp_path)
+    assert np.diff(record.log.time_us).tolist() == [10_000] * 4
+    np.testing.assert_allclose(record.log.euler_rad[0], np.deg2rad([1, 2, 40]), atol=1e-9)
