@@ -7,8 +7,8 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.study import sampling_settings
     from linepose.estimation.diagnostics import diagnose_samples
+    from linepose.estimation.noise_models import noise_model
     from linepose.pipeline.stages import (
         DIAGNOSTICS,
         OPTIMA,
@@ -23,7 +23,7 @@ with stage(snakemake) as log:
 
     platform = Platform.model_validate(snakemake.params.platform)
     optima = read_table(snakemake.input.optima, OPTIMA)
-    names, section = estimated_parameters(optima), sampling_settings(snakemake.params.sampling).section
+    names, section = estimated_parameters(optima), noise_model(platform.noise_model).section
     chains = {}
     for name in optima["stage"]:
         table = read_table(Path(snakemake.input.samples) / f"{name}.parquet", SAMPLES)

@@ -28,8 +28,16 @@ def new(
         tuple[float, float, float] | None,
         typer.Option(metavar="R P Y", help="Camera to body by eye: roll, pitch, yaw, zyx intrinsic (deg)."),
     ] = None,
-    sigma_position_m: Annotated[float, typer.Option(help="How well the tape was read, one sigma (m).")] = 0.1,
-    sigma_euler_deg: Annotated[float, typer.Option(help="How well the angles are known, one sigma (deg).")] = 2.0,
+    sigma_position_m: Annotated[
+        float | None,
+        typer.Option(help="How well the tape was read, one sigma (m).", show_default="as docs/configuration.md says"),
+    ] = None,
+    sigma_euler_deg: Annotated[
+        float | None,
+        typer.Option(
+            help="How well the angles are known, one sigma (deg).", show_default="as docs/configuration.md says"
+        ),
+    ] = None,
     source: Annotated[
         Literal["labelled_views", "scans"] | None,
         typer.Option(help="What was recorded: points with poses, one CSV file a view; or scans and a raw log."),
@@ -78,8 +86,11 @@ def new(
     if asks and dataset is None:
         dataset = _given(None, "--dataset", "Folder of its files below data/", str, name)
     if asks and source == "scans" and navigation_format is None:
-        ask = "Navigation log (table, novatel, sbet, rosbag, resonon)"
+        from linepose.inputs.navigation.registry import format_names
+
+        ask = f"Navigation log ({', '.join(format_names())})"
         navigation_format = _given(None, "--navigation-format", ask, str, "table")
+    sigmas = {"sigma_position_m": sigma_position_m, "sigma_euler_deg": sigma_euler_deg}
     plain_table = navigation_format in {None, "", "table"}
     path = write_platform(
         platforms,
@@ -92,8 +103,7 @@ def new(
             euler_deg=euler_deg,
             principal_point_px=principal_point_px,
             description=description or "",
-            sigma_position_m=sigma_position_m,
-            sigma_euler_deg=sigma_euler_deg,
+            **{name: value for name, value in sigmas.items() if value is not None},
             source=source or "labelled_views",
             dataset=dataset or name,
             navigation_format="" if plain_table else navigation_format or "",

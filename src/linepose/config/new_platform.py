@@ -36,8 +36,8 @@ class NewPlatform:
     euler_deg: Triple
     principal_point_px: float | None = None
     description: str = ""
-    sigma_position_m: float = 0.1
-    sigma_euler_deg: float = 2.0
+    sigma_position_m: float = HandMeasured.model_fields["sigma_position_m"].default
+    sigma_euler_deg: float = HandMeasured.model_fields["sigma_euler_deg"].default
     source: Literal["labelled_views", "scans"] = "labelled_views"
     dataset: str = ""
     navigation_format: str = ""

@@ -21,15 +21,12 @@ class DatasetSection(Settings):
     sha256: dict[str, str] = Field(description="SHA-256 of each file, by its path in the data set.")
     urls: dict[str, str] = Field(default_factory=dict, description="Addresses of files that stand elsewhere.")
 
-    def address(self, file: str) -> str:
-        """Where a file of the data set can be downloaded from."""
-        return self.urls.get(file, self.base_url + file)
 
-
-def sampling_settings(values: dict[str, Any]) -> SamplingSettings | IndependenceSettings:
-    """The settings that one of the two sections describes, all of its keys given."""
-    section = SamplingSettings if "stretch_scale" in values else IndependenceSettings
-    return section.model_validate(values)
+def sampling_settings(section: str, values: dict[str, Any]) -> SamplingSettings | IndependenceSettings:
+    """The settings that a section of this name describes: sampling, or independence_sampling."""
+    if section == SamplingSettings.section:
+        return SamplingSettings.model_validate(values)
+    return IndependenceSettings.model_validate(values)
 
 
 def _sampled(section: str) -> str:

@@ -17,9 +17,7 @@ from linepose.errors import EstimationError, InputError
 from linepose.geometry import rotations
 
 TURN_NAMES: Final = ("roll_rad", "pitch_rad", "yaw_rad")
-INTERVAL: Final = (0.16, 0.5, 0.84)
 NOTABLE_SHARE: Final = 0.35  # of the largest component: what is named in the weakest direction
-LEVEL_PREFIX: Final = "log_"
 WORDS: Final = {
     "r_x_m": "r_x",
     "r_y_m": "r_y",
@@ -121,23 +119,3 @@ def in_body_axes(names: Sequence[str], parameters: ArrayLike, covariance: ArrayL
     jacobian = np.eye(len(vector))
     jacobian[3:6, 3:6] = rotations.left_jacobian_so3(vector[3:6])
     return (*names[:3], *TURN_NAMES, *names[6:]), jacobian @ np.asarray(covariance, dtype=float) @ jacobian.T
-
-
-@dataclass(frozen=True)
-class Level:
-    """Median of an inferred level and its central 68 % interval."""
-
-    median: float
-    low: float
-    high: float
-
-
-def levels_from_samples(names: Sequence[str], samples: ArrayLike) -> dict[str, Level]:
-    """What samples (S, P) of the parameters say of each level, by its name without the logarithm."""
-    values = np.asarray(samples, dtype=float)
-    levels = {}
-    for column, name in enumerate(names):
-        if name.startswith(LEVEL_PREFIX):
-            low, median, high = np.exp(np.quantile(values[:, column], INTERVAL))
-            levels[name.removeprefix(LEVEL_PREFIX)] = Level(float(median), float(low), float(high))
-    return levels

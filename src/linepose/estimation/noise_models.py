@@ -21,14 +21,17 @@ if TYPE_CHECKING:  # what computes them is imported when one is asked for
     from linepose.survey.observations import Survey
 
 Make = Callable[["Survey", "Camera", ArrayLike], "Likelihood"]
+MakeComparable = Callable[["Survey", "Camera", ArrayLike], Callable[["Survey"], "Likelihood"]]
 
 
 @dataclass(frozen=True)
 class NoiseModel:
     """A noise model: its name in files, what it says, how it is drawn and sampled, and what makes its likelihood.
 
-    `make` takes the survey, the camera and the hand-measured pose (6,). `quick`: it evaluates in well under a
-    millisecond, so that hundreds of surveys can be estimated with it. `infers_levels`: it has noise levels of its own.
+    `make` takes the survey, the camera and the hand-measured pose (6,). `make_comparable` takes them too and gives what
+    makes likelihoods of moved surveys that can be compared; None where all that `make` gives can be. `quick`: it
+    evaluates in well under a millisecond, so that hundreds of surveys can be estimated with it. `infers_levels`: it has
+    noise levels of its own.
     """
 
     name: str
@@ -37,6 +40,7 @@ class NoiseModel:
     marker: str
     sampling: type[SamplingSettings] | type[IndependenceSettings]
     make: Make
+    make_comparable: MakeComparable | None = None
     quick: bool = True
     infers_levels: bool = True
 
@@ -62,6 +66,16 @@ def _balanced(survey: "Survey", camera: "Camera", start_pose: ArrayLike) -> "Lik
     from linepose.estimation.balancing import balanced
 
     return balanced(survey, camera, start_pose)
+
+
+def _balanced_at_one_reference(
+    survey: "Survey", camera: "Camera", start_pose: ArrayLike
+) -> "Callable[[Survey], Likelihood]":
+    from linepose.estimation.balancing import reference_from
+    from linepose.likelihood.balanced import BalancedLikelihood
+
+    reference = reference_from(start_pose)(survey, camera)
+    return lambda moved: BalancedLikelihood(moved, camera, lambda *_: reference)
 
 
 def _robust(survey: "Survey", camera: "Camera", _: ArrayLike) -> "Likelihood":
@@ -94,6 +108,7 @@ BALANCED: Final = NoiseModel(
     "D",
     IndependenceSettings,
     _balanced,
+    _balanced_at_one_reference,
 )
 ROBUST: Final = NoiseModel(
     "robust",
@@ -146,18 +161,11 @@ def likelihood_factory(
 
     Under the balanced model all have the reference of this one, so that their likelihoods can be compared.
     """
-    if noise_model(name) is not BALANCED:
+    make_comparable = noise_model(name).make_comparable
+    if make_comparable is None:
         return lambda moved: likelihood_of(name, moved, camera, start_pose, prior)
-    from linepose.estimation.balancing import reference_from
-    from linepose.likelihood.balanced import BalancedLikelihood
-
-    reference = reference_from(start_pose)(survey, camera)
-
-    def at_the_reference(moved: "Survey") -> "Likelihood":
-        likelihood = BalancedLikelihood(moved, camera, lambda *_: reference)
-        return likelihood if prior is None else _with_prior(likelihood, prior)
-
-    return at_the_reference
+    make = make_comparable(survey, camera, start_pose)
+    return lambda moved: make(moved) if prior is None else _with_prior(make(moved), prior)
 
 
 def _with_prior(likelihood: "Likelihood", prior: "PosePrior") -> "Likelihood":

@@ -94,7 +94,7 @@ def optimise_within(
     else:
         coarse = search.replaced(x_tolerance=_COARSE_X, f_tolerance=_COARSE_F)
         first = _powell(likelihood, start, centre, half_width, coarse)
-    ends = [_climb(likelihood, parameters, centre, half_width) for parameters in (start, first.parameters)]
+    ends = [_bfgs(likelihood, parameters, centre, half_width) for parameters in (start, first.parameters)]
     best = min(ends, key=lambda end: (not end.converged, end.neg_log_likelihood))
     return replace(best, n_evaluations=first.n_evaluations + sum(end.n_evaluations for end in ends))
 
@@ -136,10 +136,10 @@ def minimise(
     search = search or Search()
     half_width = likelihood.half_widths(search.half_width_m, search.half_width_rad)
     centre = likelihood.start(check_pose(start, "start pose"))
-    return _climb(likelihood, np.asarray(parameters, dtype=float), centre, half_width)
+    return _bfgs(likelihood, np.asarray(parameters, dtype=float), centre, half_width)
 
 
-def _climb(likelihood: "Likelihood", first: Floats, centre: Floats, half_width: Floats) -> Optimum:
+def _bfgs(likelihood: "Likelihood", first: Floats, centre: Floats, half_width: Floats) -> Optimum:
     from scipy.optimize import minimize
 
     origin = np.arcsin(np.clip((first - centre) / half_width, -1.0, 1.0))

@@ -170,8 +170,8 @@ def _fitted_proposals(
     except EstimationError:
         covariance = np.diag(likelihood.initial_walker_sigma(_OPEN_M, _OPEN_RAD) ** 2)
         moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
-    scatter = np.linalg.cholesky(covariance)
-    state: Floats | emcee.State = optimum + random.standard_normal((settings.n_walkers, len(optimum))) @ scatter.T
+    root = np.linalg.cholesky(covariance)
+    state: Floats | emcee.State = optimum + random.standard_normal((settings.n_walkers, len(optimum))) @ root.T
     for _ in range(_WARM_UPS):
         sampler = _ensemble(likelihood, state, moves, random, settings.n_burn_in // _WARM_UPS, show_progress)
         state = sampler.get_last_sample()

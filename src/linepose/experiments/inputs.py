@@ -12,6 +12,7 @@ import pyarrow as pa
 
 from linepose.config.platform import Platform
 from linepose.config.study import sampling_settings
+from linepose.estimation.noise_models import noise_model
 from linepose.estimation.optimise import Search
 from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
 from linepose.experiments.accepted import Accepted, Reference, read_accepted, read_reference
@@ -91,7 +92,8 @@ class Inputs:
 
     def sampling(self, key: str = "own_sampling") -> SamplingSettings | IndependenceSettings:
         """How posteriors are sampled: as config.yaml says under a key, or of the platform's noise model."""
-        return sampling_settings(self.study[key])
+        section = noise_model(self.platform.noise_model).section if key == "own_sampling" else key
+        return sampling_settings(section, self.study[key])
 
     def in_batches(self, task: Callable[[str], pd.DataFrame], names: Sequence[str], schema: pa.Schema) -> pd.DataFrame:
         """The tables of all named batches, one below the other; those that a killed run finished are not made again."""

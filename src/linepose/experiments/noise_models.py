@@ -19,7 +19,8 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.estimation.diagnostics import ChainDiagnostics, diagnose_samples
 from linepose.estimation.identifiability import identifiability, in_body_axes, in_words
-from linepose.estimation.noise_models import BALANCED, PUBLISHED, ROBUST, SHARED, likelihood_of
+from linepose.estimation.noise_models import BALANCED, ROBUST, SHARED, likelihood_of
+from linepose.estimation.noise_models import NOISE_MODELS as MODELS
 from linepose.estimation.optimise import Optimum, Search, optimise
 from linepose.estimation.sampling import Chain, IndependenceSettings, SamplingSettings, sample, stage_seed
 from linepose.experiments.estimate import estimate_fields, observation_list
@@ -256,13 +257,8 @@ def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     sets |= {name: other.accepted.survey for name, other in inputs.other_data.items()}
     pair = named_pair(data, inputs.settings(REPEATABILITY_SECTION), inputs.file)
     sets |= {name: data.accepted.survey.select(list(numbers)) for name, numbers in pair.items()}
-    independence = inputs.sampling("independence_sampling")
-    settings = {
-        PUBLISHED.name: inputs.sampling("sampling"),
-        SHARED.name: independence,
-        BALANCED.name: independence,
-    }
-    settings[ROBUST.name] = independence.replaced(n_steps=inputs.required(SECTION).robust_steps)
+    settings = {model.name: inputs.sampling(model.section) for model in MODELS.values()}
+    settings[ROBUST.name] = settings[ROBUST.name].replaced(n_steps=inputs.required(SECTION).robust_steps)
     camera, start = platform.intrinsics(), platform.start_pose()
     fits = []
     for fit in fit_noise_models(sets, camera, settings, start, inputs.seed, inputs.search):

@@ -1,4 +1,4 @@
-"""Every experiment, one line each; what a platform's file says of them, checked."""
+"""Every experiment, one entry each; what a platform's file says of them, checked."""
 
 from collections.abc import Mapping
 from typing import Any, Final

@@ -34,7 +34,7 @@ from linepose.likelihood.shared_marginal import (
 from linepose.likelihood.shared_rows import log_prior
 
 MAXIMUM_SWEEPS = 60
-LARGEST_ECHO = 0.8
+LARGEST_FEEDBACK = 0.8
 WEIGHT_TOLERANCE = 3e-3  # in the logarithm; the bound is stationary in the weights, so its own error is the square
 VIEW_SIZE, LINE_SIZE = 6, 2
 
@@ -165,17 +165,17 @@ def weight_steps(weight: Floats, square: Floats, slope: Floats, freedom: float, 
     largest = 0.0
     for i in range(weight.shape[0]):
         asked = np.log((freedom + size) / (freedom + square[i]) / weight[i])
-        echo = min(slope[i] * weight[i] / (freedom + square[i]), LARGEST_ECHO)
-        steps[i] = asked / (1.0 - echo)
+        feedback = min(slope[i] * weight[i] / (freedom + square[i]), LARGEST_FEEDBACK)
+        steps[i] = asked / (1.0 - feedback)
         largest = max(largest, abs(asked))
     return largest
 
 
 @njit(cache=True, error_model="numpy")
-def stride(steps: Floats, before: Floats) -> float:
+def extrapolation_factor(steps: Floats, before: Floats) -> float:
     """How many such steps remain in all, if they keep shrinking as from `before` to `steps`; between 1 and 5."""
     shrinkage = np.sum(steps * before) / max(np.sum(before * before), np.finfo(np.float64).tiny)
-    return 1.0 / (1.0 - min(max(shrinkage, 0.0), LARGEST_ECHO))
+    return 1.0 / (1.0 - min(max(shrinkage, 0.0), LARGEST_FEEDBACK))
 
 
 @njit(cache=True, error_model="numpy")
@@ -225,7 +225,7 @@ def robust_marginal(
         asked_of_lines = weight_steps(line_weight, line_square, line_slope, freedom.of_line, LINE_SIZE, steps[n_views:])
         if max(asked_of_views, asked_of_lines) < WEIGHT_TOLERANCE:
             break
-        factor = stride(steps, before) if sweep > 0 and sweep % 2 == 0 else 1.0
+        factor = extrapolation_factor(steps, before) if sweep > 0 and sweep % 2 == 0 else 1.0
         view_weight *= np.exp(factor * steps[:n_views])
         line_weight *= np.exp(factor * steps[n_views:])
     return result

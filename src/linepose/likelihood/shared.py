@@ -160,15 +160,6 @@ class SharedLikelihood(Likelihood):
         freedom = 2 * len(self._arrays.u_px) - 3 * len(self._points) - len(POSE_COLUMNS)
         return float(found.chi_squared), max(freedom, 1)
 
-    def shared_errors(self, parameters: ArrayLike) -> Floats:
-        """Navigation error (N, 6) that each view's points share: north, east, down (m), roll, pitch, yaw (rad).
-
-        Reported minus true body pose, the posterior mean at the parameters (11,).
-        """
-        vector = self._vector(parameters)
-        errors = self._fit(vector).marginal.errors
-        return -levels_at(vector).shared * np.einsum("nij,nj->ni", self._arrays.shared_root, errors)
-
     def select(self, numbers: Sequence[int]) -> "SharedLikelihood":
         """The same model of these observations only."""
         return SharedLikelihood(self.survey.select(numbers), self.camera, self.priors)

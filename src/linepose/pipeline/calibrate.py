@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
+from linepose.config.platform import Platform
 from linepose.config.study import Study
 from linepose.errors import InputError
 from linepose.estimation.diagnostics import diagnose_samples
@@ -66,10 +67,7 @@ class CalibrationSettings(Settings):
     """
 
     noise_model: NoiseModelName = Field(DEFAULT.name, description=f"The noise model. {MEANINGS}")
-    prior: Literal["none", "hand_measured"] = Field(
-        "none",
-        description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start.",
-    )
+    prior: Literal["none", "hand_measured"] = _as_in(Platform, "prior")
     threshold_px: PositiveFloat = _as_in(OutlierSettings, "threshold_px")
     minimum_observations: int = _as_in(OutlierSettings, "minimum_observations")
     search: Search = Field(Search(), description="Optimisation.")

@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.estimation.outliers import OUTLIERS, removal_order
+from linepose.estimation.outliers import OUTLIERS, OutlierSettings, removal_order
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS, euler_covariance, euler_pose
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
@@ -67,7 +67,7 @@ class Calibration:
         cls,
         folder: Path | str,
         platform: "Platform",
-        threshold_px: float = 5.0,
+        threshold_px: float = OutlierSettings().threshold_px,
         stage: str = INLIERS,
         data_folder: Path | None = None,
     ) -> "Calibration":

@@ -9,7 +9,7 @@ from math import isnan
 from typing import Final
 
 from linepose.estimation.diagnostics import MAXIMUM_R_HAT, MINIMUM_STEPS_PER_TIME
-from linepose.estimation.noise_models import DEFAULT, PUBLISHED, noise_model
+from linepose.estimation.noise_models import DEFAULT, noise_model
 
 CONSISTENT: Final = (0.5, 1.5)  # reduced chi-square of errors that are about as large as their sigmas
 MAX_INTRACLASS_CORRELATION: Final = (
@@ -53,12 +53,12 @@ class Evidence:
     hand_sigmas: float
     hand_parameter: str
     undecided: tuple[str, ...]
+    noise_model: str
     sigma_factor: float | None = None
     most_influential: int | None = None
     influence: float | None = None
     truth_sigmas: float | None = None
     truth_parameter: str = ""
-    noise_model: str = PUBLISHED.name
 
 
 @dataclass(frozen=True)

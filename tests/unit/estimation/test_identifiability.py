@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from linepose.errors import EstimationError, InputError
-from linepose.estimation.identifiability import identifiability, in_body_axes, in_words, levels_from_samples
+from linepose.estimation.identifiability import identifiability, in_body_axes, in_words
 from linepose.geometry import rotations
 from linepose.likelihood.shared import SHARED_PARAMETERS
 
@@ -61,17 +61,6 @@ def test_turns_about_the_body_axes_are_the_left_small_rotation():
     full[3:6, 3:6] = jacobian
     assert names[:7] == ("r_x_m", "r_y_m", "r_z_m", "roll_rad", "pitch_rad", "yaw_rad", "log_shared_level")
     assert np.allclose(turned, full @ covariance @ full.T, rtol=1e-8, atol=1e-8)
-
-
-def test_levels_are_the_quantiles_of_the_exponential():
-    samples = np.zeros((1001, 11))
-    samples[:, 6] = np.log(np.linspace(1, 2, 1001))
-    levels = levels_from_samples(SHARED_PARAMETERS, samples)
-    assert tuple(levels) == ("shared_level", "white_level", "pixel_level")
-    # quantiles of the logarithm are those of the level but for interpolation within 1e-3
-    assert levels["shared_level"].median == pytest.approx(1.5, abs=1e-3)
-    assert (levels["shared_level"].low, levels["shared_level"].high) == pytest.approx((1.16, 1.84), abs=1e-3)
-    assert levels["pixel_level"].median == 1.0
 
 
 def test_a_prior_without_width_is_refused():

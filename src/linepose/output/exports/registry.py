@@ -1,4 +1,4 @@
-"""Every format of export, one line each."""
+"""Every format of export, one entry each."""
 
 from typing import Final
 

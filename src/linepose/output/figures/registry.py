@@ -1,4 +1,4 @@
-"""Every figure of a platform, in the order of the page: one line each."""
+"""Every figure of a platform, in the order of the page: one entry each."""
 
 from typing import Final
 

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import pytest
 
+from linepose.estimation.noise_models import PUBLISHED
 from linepose.pipeline.verdict import Evidence, Level, judge
 
 FINE = Evidence(
@@ -20,6 +21,7 @@ FINE = Evidence(
     hand_sigmas=1.2,
     hand_parameter="r_y right",
     undecided=(),
+    noise_model=PUBLISHED.name,
     sigma_factor=1.05,
     most_influential=5,
     influence=0.6,
