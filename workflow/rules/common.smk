@@ -47,6 +47,9 @@ if PROJECT.unavailable and workflow.is_main_process:
     )
 
 STUDY = PROJECT.study
+SCRIPTS = (
+    Path(str(workflow.current_basedir)).parents[1] / "scripts"
+)  # themselves, not copies
 
 # A folder of results from which a file was lost is made again: the list of its files goes, by which its rule is known.
 if workflow.is_main_process:
@@ -139,8 +142,7 @@ def section(key):
 
 def script_digest(name, *modules):
     """Digest of a script's code, and of modules that it imports by name, as the rule's parameter `code`."""
-    script = workflow.source_path(f"../../scripts/{name}.py")
-    return code_digest.script_digest(script, *modules)
+    return code_digest.script_digest(SCRIPTS / f"{name}.py", *modules)
 
 
 def experiment_inputs(experiment):
