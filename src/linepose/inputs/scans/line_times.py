@@ -59,7 +59,7 @@ def _resonon(scan: Path, scale: TimeScale) -> tuple[Stamps, Path, int]:
     times_file = _first_file([f"{name}{ending}" for name in names for ending in (".times", *_TIMES_ENDINGS)], scan)
     location = _first_file([f"{name}.lcf" for name in names], scan)
     seconds = np.array([_number(word, times_file, row) for row, word in enumerate(_rows(times_file), start=1)])
-    start_us = int(location_unix_us(location_rows(location)[:1, 0], scale)[0])
+    start_us = int(location_unix_us(location_rows(location)[:1, 0], scale, location)[0])
     return start_us + gps_time.microseconds(seconds - seconds[:1], "s"), times_file, 0
 
 

@@ -54,3 +54,14 @@ def test_bytes_that_are_no_text_are_told(tmp_path):
     (tmp_path / "a.lcf").write_bytes(b"\xaaD\x13\xff\x00")
     with pytest.raises(InputError, match=r"a.lcf: found bytes that are no text"):
         read_navigation(SECTION, tmp_path)
+
+
+def test_times_before_such_devices_were_built_are_told(tmp_path, caplog):
+    """A receiver that lost the rollover of the GPS week counts from 1996 in 2016."""
+    rows = [
+        f"{521_400_000 + 0.005 * row:.3f}\t0.0167\t-0.0368\t2.589\t8.0\t50.0\t424.0\t0\t0\t5\t4\n" for row in range(9)
+    ]
+    (tmp_path / "run.lcf").write_text("".join(rows))
+    read_navigation(ResononSection(format="resonon", file="run.lcf"), tmp_path)
+    assert "run.lcf: times of 1996-07-" in caplog.text
+    assert "may have lost 1024 GPS weeks (2016-02-" in caplog.text
