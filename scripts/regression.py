@@ -23,4 +23,9 @@ with stage(snakemake) as log:
     write_table(table, snakemake.output.parquet, REGRESSION)
     write_csv(table, snakemake.output.csv)
     deviating = int(table["expected"].notna().sum())
-    log.info("%d of %d published numbers passed, %d known deviations", table["passed"].sum(), len(table), deviating)
+    log.info(
+        "%d of %d published numbers passed, %d declared: known deviations and expected intervals",
+        table["passed"].sum(),
+        len(table),
+        deviating,
+    )

@@ -32,8 +32,8 @@ def published_sections(regression: pd.DataFrame, tables: Mapping[str, pd.DataFra
     if len(differing):
         table = _table("published-differing", "Numbers that differ", "", differing, "quantity", folded=False)
         text = (
-            f"{_told(rows)} A known deviation is declared before the run, with its reason and the value that is "
-            "expected instead: it fails where another one is obtained, a better one too."
+            f"{_told(rows)} A known deviation or an expected interval is declared before the run, with its reason: the "
+            "number fails outside it, also where it is better."
         )
         sections.insert(0, SectionOnPage("published-what-differs", "What differs", text, [table]))
     if tables:
@@ -54,7 +54,7 @@ def _told(rows: pd.DataFrame) -> str:
     deviating, passed = rows["expected"].notna(), rows["passed"]
     known, failed = int((deviating & passed).sum()), int((~passed).sum())
     told = f"{int((passed & ~deviating).sum())} of {len(rows)} reproduced within the tolerance"
-    told += f", {known} deviating as declared" if known else ""
+    told += f", {known} as declared" if known else ""
     return told + (f", {failed} not reproduced." if failed else ".")
 
 
@@ -84,5 +84,5 @@ def _table(
 def _outcome(row: "pd.Series[Any]") -> str:
     if pd.isna(row["expected"]):
         return "✓ passed" if row["passed"] else "✗ differs"
-    instead = f"{row['expected']:.6g} ± {row['expected_tolerance']:.2g} is declared: {row['note']}"
-    return f"known deviation, {instead}" if row["passed"] else f"✗ differs, {instead}"
+    instead = f"{row['expected']:.6g} ± {row['expected_tolerance']:.2g}: {row['note']}"
+    return f"as declared, {instead}" if row["passed"] else f"✗ differs, {instead}"

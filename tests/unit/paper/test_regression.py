@@ -102,13 +102,20 @@ def test_every_number_fails_beyond_its_tolerance_either_way(index):
         check_passed(table)
 
 
+NO_ERROR_IS_EXPECTED_TOO = {  # the published error of nothing lies in the declared interval
+    f"{platform}, error against truth in sigmas, {parameter}"
+    for platform in ("ladybird-sim", "shrimp-sim")
+    for parameter in ("r_x_m", "r_y_m", "r_z_m", "theta_x_rad", "theta_y_rad", "theta_z_rad")
+}
+
+
 def test_a_deviation_that_is_reproduced_after_all_fails():
     """Unless the published number lies in the declared interval, as an error of nothing does."""
-    for name, (instead, _) in DECLARED.expected.items():
+    for name in DECLARED.expected:
         (number,) = (one for one in NUMBERS if one.quantity == name)
         reproduced = number._replace(obtained=number.published)
-        inside = abs(number.published - instead.expected) <= instead.tolerance
-        assert failed(regression_table([reproduced], _only(name))) == ([] if inside else [name])
+        fails = [] if name in NO_ERROR_IS_EXPECTED_TOO else [name]
+        assert failed(regression_table([reproduced], _only(name))) == fails
 
 
 def _only(name: str) -> Declarations:

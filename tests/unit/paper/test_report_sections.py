@@ -31,15 +31,13 @@ def test_published_numbers_are_grouped_with_their_outcome():
     (table,) = differing.tables
     assert [row[0] for row in table.rows] == ["made-up, Table 3, r_y_m", "made-up, notebook, neg_log_likelihood"]
     assert [row[-1] for row in table.rows] == [
-        "known deviation, -0.14 ± 0.001 is declared: printed wrongly",
+        "as declared, -0.14 ± 0.001: printed wrongly",
         "✗ differs",
     ]
     assert not table.folded
-    assert differing.text.startswith(
-        "3 of 5 reproduced within the tolerance, 1 deviating as declared, 1 not reproduced."
-    )
+    assert differing.text.startswith("3 of 5 reproduced within the tolerance, 1 as declared, 1 not reproduced.")
     assert [(table.title, table.sentence) for table in made_up_section.tables] == [
-        ("Table 3", "1 of 2 reproduced within the tolerance, 1 deviating as declared."),
+        ("Table 3", "1 of 2 reproduced within the tolerance, 1 as declared."),
         ("notebook", "0 of 1 reproduced within the tolerance, 1 not reproduced."),
     ]
     (single,) = other.tables
@@ -50,7 +48,7 @@ def test_published_numbers_are_grouped_with_their_outcome():
 def test_notes_of_numbers_that_passed_stand_once_above_their_table():
     noted = REGRESSION.assign(note=["simulated", "printed wrongly", "", "simulated", "simulated"])
     _, made_up_section, other = published_sections(noted, {})
-    assert made_up_section.tables[0].sentence.endswith("1 deviating as declared. Simulated.")
+    assert made_up_section.tables[0].sentence.endswith("1 as declared. Simulated.")
     assert other.tables[0].sentence == "2 of 2 reproduced within the tolerance. Simulated."
 
 
@@ -77,4 +75,4 @@ def test_the_page_names_the_platforms_left_out():
 def test_a_deviation_other_than_declared_differs():
     other = REGRESSION.assign(passed=[True, False, True, True, True])
     table = published_sections(other, {})[0].tables[0]
-    assert [row[-1] for row in table.rows] == ["✗ differs, -0.14 ± 0.001 is declared: printed wrongly"]
+    assert [row[-1] for row in table.rows] == ["✗ differs, -0.14 ± 0.001: printed wrongly"]
