@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from linepose.adjustment.assemble import Fit, assembled
 from linepose.adjustment.curvature import Curvature, curvature
 from linepose.adjustment.estimate import Estimate, unit_weights
-from linepose.adjustment.hand_measured import HandMeasured, hand_measured
+from linepose.adjustment.hand_measured import HandMeasuredPrior, hand_measured
 from linepose.adjustment.heavy_tailed import with_tails
 from linepose.adjustment.many_points import MANY_POINTS, normalised_of_many, solve_many, some_points, spread_of_many
 from linepose.adjustment.measurements import KnownPoints, Measurements, measurements_from_survey
@@ -80,7 +80,11 @@ def adjust(
 
 
 def _of_all(
-    measurements: Measurements, knowledge: Knowledge, pose: Floats, hand: HandMeasured, settings: AdjustmentSettings
+    measurements: Measurements,
+    knowledge: Knowledge,
+    pose: Floats,
+    hand: HandMeasuredPrior,
+    settings: AdjustmentSettings,
 ) -> tuple[Fit, Estimate, Curvature, Mixture]:
     """All measurements at once, where their normal equations are small."""
     found = with_tails(

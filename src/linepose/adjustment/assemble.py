@@ -8,7 +8,7 @@ import pandas as pd
 
 from linepose.adjustment.curvature import Curvature
 from linepose.adjustment.estimate import Estimate
-from linepose.adjustment.hand_measured import HandMeasured
+from linepose.adjustment.hand_measured import HandMeasuredPrior
 from linepose.adjustment.levels import N_LEVELS
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_POSE
@@ -144,7 +144,7 @@ def _diagnostics(
     )
 
 
-def _beside_hand(hand: HandMeasured, state: State, covariance: Floats) -> tuple[Floats, tuple[str, ...]]:
+def _beside_hand(hand: HandMeasuredPrior, state: State, covariance: Floats) -> tuple[Floats, tuple[str, ...]]:
     """How many sigmas the hand measurement is off what the data say alone (6,), and what the data leave to it."""
     hand_matrix = rotations.matrix_from_rotation_vector(hand.pose[3:])
     turn = rotations.rotation_vector_from_matrix(hand_matrix @ state.rotation.T)

@@ -16,7 +16,7 @@ from linepose.geometry.pose import check_pose
 
 
 @dataclass(frozen=True)
-class HandMeasured:
+class HandMeasuredPrior:
     """A pose (6,) with a rotation vector, and the covariance (6, 6) of position (m) and turn about body axes (rad)."""
 
     pose: Floats
@@ -36,7 +36,7 @@ class HandMeasured:
         return weighted @ by_step, weighted @ error, float(error @ inverse @ error)
 
 
-def hand_measured(pose: Floats, covariance: Floats) -> HandMeasured:
+def hand_measured(pose: Floats, covariance: Floats) -> HandMeasuredPrior:
     """The prior of a pose (6,) and covariance (6, 6); raises InputError for one that is not positive definite."""
     matrix = np.asarray(covariance, dtype=float)
     if matrix.shape != (6, 6):
@@ -50,7 +50,7 @@ def hand_measured(pose: Floats, covariance: Floats) -> HandMeasured:
             "a symmetric positive definite one",
             "give positive sigmas",
         )
-    return HandMeasured(check_pose(pose, "hand-measured pose"), matrix)
+    return HandMeasuredPrior(check_pose(pose, "hand-measured pose"), matrix)
 
 
 def covariance_of_sigmas(position_m: float, rotation_rad: float) -> Floats:

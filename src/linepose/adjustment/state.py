@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linepose.adjustment.hand_measured import HandMeasured
+from linepose.adjustment.hand_measured import HandMeasuredPrior
 from linepose.adjustment.linearise import Optics
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_CAMERA, N_INTRINSICS, Prior
@@ -76,7 +76,7 @@ class Knowledge:
     """The camera as its file has it, and the hand-measured pose where it is a prior."""
 
     camera: Camera
-    hand: HandMeasured | None
+    hand: HandMeasuredPrior | None
 
     def prior(self, state: State, measurements: Measurements) -> Prior:
         """As quadratic forms about a state."""
