@@ -62,6 +62,7 @@ rule sample:
     input:
         **OBSERVED,
         optima="results/{platform}/optima.parquet",
+        lost=remade_if_lost("results/{platform}/mcmc"),
     output:
         samples=directory("results/{platform}/mcmc"),
         files="results/{platform}/mcmc_files.txt",

@@ -51,18 +51,6 @@ SCRIPTS = (
     Path(str(workflow.current_basedir)).parents[1] / "scripts"
 )  # themselves, not copies
 
-# A folder of results from which a file was lost is made again: the list of its files goes, by which its rule is known.
-if workflow.is_main_process:
-    for folder in [
-        *(f"results/{name}/{what}" for name in PROJECT.platforms for what in FOLDERS),
-        "results/coverage/figures",
-    ]:
-        lost = lost_files(Path(folder), Path(f"{folder}_files.txt"))
-        if lost:
-            logger.warning(
-                f"{folder}: {', '.join(lost)} lost; the folder is made again"
-            )
-            Path(f"{folder}_files.txt").unlink()
 PLATFORMS = [name for name in STUDY.platforms if name in PROJECT.platforms]
 PAPER_RESULTS = []  # what `rule all` makes of the paper, where config/paper exists
 FURTHER_PAGES = {}  # that the report links to: title and address
@@ -70,6 +58,31 @@ FURTHER_PAGES = {}  # that the report links to: title and address
 
 wildcard_constraints:
     platform="[A-Za-z0-9_-]+",
+
+
+TOLD = set()  # folders whose losses were told of
+
+
+def remade_if_lost(folder):
+    """No input, but a folder of results from which a file was lost is made again, as by --forcerun with its list.
+
+    Snakemake asks for a rule's inputs before it decides what to run. Nothing on disk is changed, so that a dry run
+    plans what a run does.
+    """
+
+    def no_input(wildcards):
+        name = folder.format(**wildcards)
+        lost = lost_files(Path(name), Path(f"{name}_files.txt"))
+        if lost and workflow.is_main_process and workflow.dag is not None:
+            workflow.dag.forcefiles.add(f"{name}_files.txt")
+            if name not in TOLD:
+                TOLD.add(name)
+                logger.warning(
+                    f"{name}: {', '.join(lost)} lost; the folder is made again"
+                )
+        return []
+
+    return no_input
 
 
 def settings_of(platform):

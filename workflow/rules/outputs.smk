@@ -12,6 +12,7 @@ rule figures:
         points="results/{platform}/estimated_points.parquet",
         experiments=figure_inputs,
         record=record,
+        lost=remade_if_lost("results/{platform}/figures"),
     output:
         files="results/{platform}/figures_files.txt",
         figures=report(

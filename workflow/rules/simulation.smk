@@ -5,6 +5,8 @@ SIMULATED = "|".join(PROJECT.simulated) or "[^\\s\\S]"  # a pattern that no name
 
 
 rule simulate:
+    input:
+        lost=remade_if_lost("results/{platform}/simulated"),
     output:
         folder=directory("results/{platform}/simulated"),
         files="results/{platform}/simulated_files.txt",
@@ -87,6 +89,7 @@ rule coverage_cell:
 rule coverage:
     input:
         cells=covered_cells,
+        lost=remade_if_lost("results/coverage/figures"),
     output:
         surveys="results/coverage/surveys.parquet",
         coverage="results/coverage/coverage.parquet",
