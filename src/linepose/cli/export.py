@@ -48,7 +48,6 @@ def export(
     loaded, folder = load_platform_project(name, root), root / "results" / name
     if not (folder / "pose.parquet").is_file():
         raise InputError(str(folder), "no result", "that of a run", f"linepose run {name}")
-    tell_outdated(loaded, root, name)
     target = output or folder / "exports"
     if output is None:
         target.mkdir(exist_ok=True)
@@ -56,4 +55,6 @@ def export(
     calibration = Calibration.from_results(
         folder, loaded.platforms[name], loaded.study.outliers.threshold_px, stage, root / loaded.folder(name)
     )
-    typer.echo(export_calibration(calibration, format, target, options))
+    written = export_calibration(calibration, format, target, options)
+    tell_outdated(loaded, root, name)
+    typer.echo(written)

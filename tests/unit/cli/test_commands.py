@@ -89,7 +89,7 @@ def test_new_takes_every_navigation_format(here, name):
     assert result.exit_code == 0, result.output
     source = load_platform(here / "config" / "platforms", "mine").source
     assert (source.navigation.format, source.navigation.file) == (name, "log/*.bin")
-    assert source.covariances is None
+    assert source.covariances == ("covariances.csv" if name == "resonon" else None)  # its logs hold none
 
 
 def test_new_lists_the_formats_for_an_unknown_one(here):
