@@ -105,14 +105,16 @@ def experiment_results(platform):
 
 
 def results_of(platform):
-    """Every result of a platform that people read, and the lists of files of those that are folders."""
-    simulated = platform in PROJECT.simulated
-    names = ["pose", "diagnostics", *(["detection"] if simulated else [])]
-    folders = [name for name in FOLDERS if simulated or name != "simulated"]
-    return [
-        *experiment_results(platform),
-        *(f"results/{platform}/{name}.parquet" for name in names),
-        *(f"results/{platform}/{name}_files.txt" for name in folders),
+    """Every result of a platform, so that whichever of them is lost is made again."""
+    names = ["points.parquet", "observations.parquet", "navigation_sigma.parquet"]
+    names += ["map_frame.parquet", "outliers.parquet", "optima.parquet"]
+    names += ["mcmc_files.txt", "pose.parquet", "diagnostics.parquet"]
+    names += ["residuals.parquet", "estimated_points.parquet", "figures_files.txt"]
+    if platform in PROJECT.simulated:
+        names += ["simulated_files.txt", "truth.parquet", "detection.parquet"]
+        names += ["extraction_accuracy.parquet", "detected_points.parquet"]
+    return experiment_results(platform) + [
+        f"results/{platform}/{name}" for name in names
     ]
 
 
