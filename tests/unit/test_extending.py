@@ -182,7 +182,8 @@ def test_figure(copy):
 
 
 def test_export(copy):
-    extended(copy, "export").platform()
+    extended(copy, "export").install()
+    copy.platform()
     made_up.write_results(copy.folder / "results" / "mine")
     assert "4 x 4 matrix from camera to body, plain text" in copy.linepose("export", "mine", "--list")
     copy.linepose("export", "mine", "--format", "matrix")

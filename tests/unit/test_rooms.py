@@ -6,7 +6,7 @@ from pathlib import Path
 import linepose
 
 PACKAGE = Path(linepose.__file__).parent
-LOOSE = ("errors", "arrays", "tables", "settings")
+LOOSE = ("errors", "arrays", "tables", "plugins", "settings")
 ROOMS = (
     *LOOSE,
     "geometry",
@@ -35,6 +35,11 @@ def imported(path):
             yield node.module.split(".")[1], node.lineno
         elif isinstance(node, ast.Import):
             yield from ((n.name.split(".")[1], node.lineno) for n in node.names if n.name.startswith("linepose."))
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__"):
+            texts = (
+                one.value for one in ast.walk(node) if isinstance(one, ast.Constant) and isinstance(one.value, str)
+            )
+            yield from ((text.split(".")[1], node.lineno) for text in texts if text.startswith("linepose."))
 
 
 def against_the_order(package):
@@ -68,6 +73,11 @@ def test_an_import_from_a_later_room_is_found(tmp_path):
     (tmp_path / "survey").mkdir()
     (tmp_path / "survey" / "points.py").write_text(
         "from linepose.geometry.pose import x\n\n\n"
-        "def f():\n    from linepose.config import study\n    import linepose.cli.app\n"
+        "def f(name):\n    from linepose.config import study\n    import linepose.cli.app\n"
+        "    importlib.import_module('linepose.geometry.pose')\n"
+        "    importlib.import_module('linepose.output.exports')\n"
+        "    import_module(f'linepose.paper.{name}')\n"
+        "    __import__('linepose.check.clock')\n"
     )
-    assert against_the_order(tmp_path) == ["survey/points.py:5: config", "survey/points.py:6: cli"]
+    found = ["5: config", "6: cli", "8: output", "9: paper", "10: check"]
+    assert against_the_order(tmp_path) == [f"survey/points.py:{one}" for one in found]

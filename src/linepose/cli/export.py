@@ -10,9 +10,9 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 
 def _tell_formats(asked: bool) -> None:
     if asked:
-        from linepose.output.exports import EXPORTS
+        from linepose.pipeline.exports.registry import EXPORTS
 
-        for one in EXPORTS.values():
+        for one in (EXPORTS.member(name) for name in EXPORTS.names()):
             typer.echo(f"{one.name:12s}{one.title}")
         raise typer.Exit
 
@@ -38,12 +38,16 @@ def export(
     """Write a finished platform's pose, or the points it maps, for a robot or a map."""
     from linepose.cli.freshness import tell_outdated
     from linepose.errors import InputError
-    from linepose.output.exports import EXPORTS, export_calibration, export_options
     from linepose.pipeline.calibration import Calibration
+    from linepose.pipeline.exports.options import export_options
+    from linepose.pipeline.exports.registry import EXPORTS
+    from linepose.pipeline.exports.write import export_calibration
     from linepose.pipeline.project_folder import find_project, load_platform_project
 
     if not format:
-        raise InputError("--format", "nothing", f"one of {', '.join(EXPORTS)}", f"linepose export {name} --format urdf")
+        raise InputError(
+            "--format", "nothing", f"one of {', '.join(EXPORTS.names())}", f"linepose export {name} --format urdf"
+        )
     root = find_project(project)
     loaded, folder = load_platform_project(name, root), root / "results" / name
     if not (folder / "pose.parquet").is_file():

@@ -86,9 +86,9 @@ def new(
     if asks and dataset is None:
         dataset = _given(None, "--dataset", "Folder of its files below data/", str, name)
     if asks and source == "scans" and navigation_format is None:
-        from linepose.inputs.navigation.registry import format_names
+        from linepose.inputs.navigation.registry import FORMATS
 
-        ask = f"Navigation log ({', '.join(format_names())})"
+        ask = f"Navigation log ({', '.join(FORMATS.names())})"
         navigation_format = _given(None, "--navigation-format", ask, str, "table")
     sigmas = {"sigma_position_m": sigma_position_m, "sigma_euler_deg": sigma_euler_deg}
     plain_table = navigation_format in {None, "", "table"}

@@ -12,7 +12,7 @@ from linepose.config.platform import NavigationSection, Platform
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT
 from linepose.geometry.camera import Camera, CameraSigmas
-from linepose.inputs.navigation.registry import navigation_format
+from linepose.inputs.navigation.registry import FORMATS
 from linepose.settings import validated
 from linepose.survey.hand_measured import HandMeasured
 from linepose.tables import atomic_write
@@ -170,7 +170,7 @@ def _source(new: NewPlatform) -> list[str]:
             f"    format: {new.navigation_format}",
             f"    file: {_quoted(new.navigation or 'navigation.*')} # below the data set's folder",
         ]
-    if not new.navigation_format or not navigation_format(new.navigation_format).has_covariances:
+    if not new.navigation_format or not FORMATS.member(new.navigation_format).has_covariances:
         lines.append("  covariances: covariances.csv # rows of time (us) and the row-major 12x12 covariance")
     return lines
 

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -17,6 +16,8 @@ from linepose.estimation.outliers import OUTLIERS, OutlierSettings, removal_orde
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS, euler_covariance, euler_pose
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
+from linepose.pipeline.exports.options import ExportOptions
+from linepose.pipeline.exports.write import export_calibration
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS
 from linepose.pipeline.results import Results
 from linepose.pipeline.stages import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
@@ -279,12 +280,10 @@ class Calibration:
         """Write the pose, or the points that it maps, as a robot or a map reads them; the path that was written.
 
         `format` is one of `linepose export --list`; `path` a file, or a folder in which one is named after platform and
-        format. `options` are the fields of `linepose.output.exports.ExportOptions`: parent_frame, child_frame,
+        format. `options` are the fields of `ExportOptions`: parent_frame, child_frame,
         body_axes. Raises InputError for an unknown format, and for results that the format needs and that are missing.
         """
-        exports = import_module("linepose.output.exports")  # by its name: output rests on this room, not it on output
-        written: Path = exports.export_calibration(self, format, Path(path), exports.ExportOptions(**options))
-        return written
+        return export_calibration(self, format, Path(path), ExportOptions(**options))
 
     def _row_of(self, stage: str) -> "pd.Series[Any]":
         rows = self.poses.set_index("stage")

@@ -19,8 +19,8 @@ _PACKAGE: Final = Path(__file__).parents[1]
 _CODE: Final = {".py", ".pyi", ".pyc", ".typed"}
 _CACHE: Final = SourceCache(Path(__file__).parent / "__pycache__")
 
-LISTS: Final = frozenset({"linepose/experiments/registry.py"})
-"""Modules that list others of which a job runs one: its rule names that one beside the script."""
+LISTS: Final = frozenset({"linepose/experiments/registry.py", "linepose/pipeline/exports/registry.py"})
+"""Modules that list others of which a job runs one, which its rule names beside the script, or none."""
 
 
 def script_digest(script: Path | str, *modules: str) -> str:

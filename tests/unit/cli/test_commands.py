@@ -278,11 +278,11 @@ def test_export_writes_below_the_results_or_where_it_is_told(finished):
 
 
 def test_export_tells_its_formats(finished):
-    from linepose.output.exports import EXPORTS
+    from linepose.pipeline.exports.registry import EXPORTS
 
     told = given("export", "--list")
     assert told.exit_code == 0
-    assert all(f"{key} " in told.stdout for key in EXPORTS)
+    assert all(f"{key} " in told.stdout for key in EXPORTS.names())
     assert "urdf" in one_line(given("export", "mine"))
     assert "did you mean urdf?" in one_line(given("export", "mine", "--format", "urd"))
 

@@ -8,7 +8,7 @@ from linepose.inputs.navigation.covariance_file import read_covariances
 from linepose.inputs.navigation.format import NavigationFormatSection
 from linepose.inputs.navigation.log_file import read_navigation_log
 from linepose.inputs.navigation.record import NavigationRecord
-from linepose.inputs.navigation.registry import navigation_format
+from linepose.inputs.navigation.registry import FORMATS
 from linepose.inputs.scans.line_times import first_time_us
 from linepose.inputs.source import ScansSection
 from linepose.survey.navigation import NavigationCovariances
@@ -27,7 +27,7 @@ def read_navigation(section: ScansSection | NavigationFormatSection | str, folde
     if isinstance(section, ScansSection) and _lacks_week(navigation):
         week = gps_time.week_at(first_time_us(section, folder))
         navigation = navigation.model_copy(update={"gps_week": week})
-    record: NavigationRecord = navigation_format(navigation.format).read(navigation, folder)
+    record: NavigationRecord = FORMATS.member(navigation.format).read(navigation, folder)
     return record
 
 

@@ -4,9 +4,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from linepose.output.exports.format import ExportFormat
-from linepose.output.exports.options import AXES_IN_WORDS, ExportOptions
 from linepose.output.exports.words import CAMERA_AXES
+from linepose.pipeline.exports.format import ExportFormat
+from linepose.pipeline.exports.options import AXES_IN_WORDS, ExportOptions
 
 if TYPE_CHECKING:
     from linepose.pipeline.calibration import Calibration

@@ -8,9 +8,9 @@ the line as linepose's do.
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from linepose.output.exports.format import ExportFormat
-from linepose.output.exports.options import ExportOptions
 from linepose.output.exports.words import explained
+from linepose.pipeline.exports.format import ExportFormat
+from linepose.pipeline.exports.options import ExportOptions
 
 if TYPE_CHECKING:
     from linepose.pipeline.calibration import Calibration

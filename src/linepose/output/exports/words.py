@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from linepose.output.exports.options import AXES_IN_WORDS
+from linepose.pipeline.exports.options import AXES_IN_WORDS
 
 if TYPE_CHECKING:
     from linepose.geometry.pose_with_covariance import PoseWithCovariance

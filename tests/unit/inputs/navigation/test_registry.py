@@ -12,7 +12,7 @@ import yaml
 from linepose.config.platform import Platform, load_platform
 from linepose.errors import InputError
 from linepose.inputs.navigation import read_navigation
-from linepose.inputs.navigation.registry import format_names, navigation_format, own_formats
+from linepose.inputs.navigation.registry import FORMATS
 from linepose.settings import Settings, validated
 
 PAGE = (Path(__file__).parents[4] / "docs" / "formats.md").read_text()
@@ -106,9 +106,9 @@ def test_wrong_keys_are_one_line(tmp_path, installed, navigation, told):
 
 
 def test_our_own_formats_are_entry_points_as_any_other():
-    assert format_names() == [own.name for own in own_formats()]
-    for own in own_formats():
-        assert navigation_format(own.name) is own
+    assert FORMATS.names() == [own.name for own in FORMATS.own()]
+    for own in FORMATS.own():
+        assert FORMATS.member(own.name) is own
         assert own.section.__module__ == own.read.__module__ == f"linepose.inputs.navigation.{own.name}"
         assert f"### {own.name}:" in PAGE
 
@@ -117,7 +117,7 @@ def test_examples_of_the_page_are_configurations():
     examples = [yaml.safe_load(block)["navigation"] for block in blocks("yaml")]
     assert [one["format"] for one in examples] == ["table", "novatel", "sbet", "rosbag", "resonon"]
     for one in examples:
-        validated(navigation_format(one["format"]).section, one, "docs/formats.md")
+        validated(FORMATS.member(one["format"]).section, one, "docs/formats.md")
 
 
 def test_path_takes_covariances_from_a_file_and_a_format_from_the_log(tmp_path):
@@ -128,5 +128,5 @@ def test_path_takes_covariances_from_a_file_and_a_format_from_the_log(tmp_path):
 def test_section_is_frozen():
     assert all(
         issubclass(section, Settings) and section.model_config["frozen"]
-        for section in [one.section for one in own_formats()]
+        for section in [one.section for one in FORMATS.own()]
     )

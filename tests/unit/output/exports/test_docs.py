@@ -33,7 +33,7 @@ def test_examples_run_and_read_the_same_pose(tmp_path, monkeypatch):
 
 
 def test_page_names_every_format_and_no_other():
-    from linepose.output.exports import EXPORTS
+    from linepose.pipeline.exports.registry import EXPORTS
 
     named = re.findall(r"^\| `(\w+)` \|", PAGE.read_text(), re.MULTILINE)
-    assert named == list(EXPORTS)
+    assert sorted(named) == EXPORTS.names()

@@ -1,20 +1,21 @@
 import pytest
 
 from linepose.errors import InputError
-from linepose.output.exports import EXPORTS, ExportOptions
 from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.exports.options import ExportOptions
+from linepose.pipeline.exports.registry import EXPORTS
 from unit import made_up
 
 
-@pytest.mark.parametrize("format", EXPORTS)
+@pytest.mark.parametrize("format", EXPORTS.names())
 def test_a_folder_gets_a_file_of_the_format_s_name(made, tmp_path, format):
     path = made.export(format, tmp_path)
-    assert path == tmp_path / f"made-up{EXPORTS[format].suffix}"
+    assert path == tmp_path / f"made-up{EXPORTS.member(format).suffix}"
     assert path.stat().st_size > 0
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.parametrize("format", EXPORTS)
+@pytest.mark.parametrize("format", EXPORTS.names())
 def test_before_a_run_the_message_says_what_to_run(tmp_path, format):
     platform = made_up.platform(map_frame={"crs": "EPSG:32756"})
     with pytest.raises(InputError, match=r"run `linepose run robot` first"):
@@ -22,7 +23,7 @@ def test_before_a_run_the_message_says_what_to_run(tmp_path, format):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("format", EXPORTS)
+@pytest.mark.parametrize("format", EXPORTS.names())
 def test_a_file_that_is_there_stays_when_the_export_fails(made, tmp_path, format):
     target = tmp_path / "out"
     target.write_text("earlier")
@@ -33,7 +34,7 @@ def test_a_file_that_is_there_stays_when_the_export_fails(made, tmp_path, format
 
 
 def test_unknown_format_names_the_nearest(made, tmp_path):
-    with pytest.raises(InputError, match=r"format: found 'urfd', expected one of urdf, .*; did you mean urdf\?"):
+    with pytest.raises(InputError, match=r"format: found 'urfd', expected one of csv, .*; did you mean urdf\?"):
         made.export("urfd", tmp_path)
 
 

@@ -1,12 +1,11 @@
 """A calibration in a format, whole or not at all."""
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linepose.errors import InputError
-from linepose.output.exports.options import ExportOptions
-from linepose.output.exports.registry import EXPORTS
+from linepose.pipeline.exports.options import ExportOptions
+from linepose.pipeline.exports.registry import EXPORTS
+from linepose.tables import atomic_write
 
 if TYPE_CHECKING:
     from linepose.pipeline.calibration import Calibration
@@ -20,13 +19,7 @@ def export_calibration(
     `output` is a file, or a folder in which one is named after platform and format. The file is written whole or not at
     all. Raises InputError for an unknown format or stage, and where the platform has not been run as far as that needs.
     """
-    from linepose.tables import atomic_write
-
-    if format not in EXPORTS:
-        near = get_close_matches(format, EXPORTS, n=1)
-        remedy = f"did you mean {near[0]}?" if near else "choose one of them"
-        raise InputError("format", repr(format), f"one of {', '.join(EXPORTS)}", remedy)
-    chosen = EXPORTS[format]
+    chosen = EXPORTS.member(format)
     path = output / f"{calibration.name}{chosen.suffix}" if output.is_dir() else output
     with atomic_write(path) as temporary:
         chosen.write(calibration, options or ExportOptions(), temporary)

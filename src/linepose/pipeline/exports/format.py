@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linepose.output.exports.options import ExportOptions
+from linepose.pipeline.exports.options import ExportOptions
 
 if TYPE_CHECKING:
     from linepose.pipeline.calibration import Calibration
