@@ -119,7 +119,8 @@ def _solved(measurements: Measurements, knowledge: Knowledge, state: State) -> t
     optics = state.optics(knowledge.camera)
     for _ in range(2):  # the first compiles
         start = time.process_time()
-        linearise(measurements.u_px, measurements.body_pose, measurements.point, state.points_m, optics, linearised)
+        body, rates = state.body_poses(measurements), knowledge.rates(measurements)
+        linearise(measurements.u_px, body, rates, measurements.point, state.points_m, optics, linearised)
         process = components(structure, error_image(structure, linearised), LEVELS, weights)
         factor = factorise(process, structure.view_of, structure.begins)
         system = equations(linearised, measurements.point, factor, knowledge.prior(state, measurements))

@@ -12,7 +12,7 @@ from linepose.adjustment.hand_measured import HandMeasuredPrior, hand_measured
 from linepose.adjustment.heavy_tailed import with_tails
 from linepose.adjustment.many_points import MANY_POINTS, normalised_of_many, solve_many, some_points, spread_of_many
 from linepose.adjustment.measurements import KnownPoints, Measurements, measurements_from_survey
-from linepose.adjustment.normal import N_POSE, trailing_inverse
+from linepose.adjustment.normal import trailing_inverse
 from linepose.adjustment.posterior import Mixture, mixture
 from linepose.adjustment.residuals import normalised_residuals
 from linepose.adjustment.result import Adjustment
@@ -49,7 +49,7 @@ def adjust(
     measurements = measurements_from_survey(survey, camera, known_points, settings.line_period_s)
     if measurements.n_views < 2:
         raise InputError("observations", "one observation", "two or more", "add observations of the same pattern")
-    knowledge = Knowledge(camera, hand if settings.hand_measured_prior else None)
+    knowledge = Knowledge(camera, hand if settings.hand_measured_prior else None, settings.clock_offset_sigma_s)
     if measurements.n_points <= MANY_POINTS:
         return assembled(
             survey, measurements, knowledge, *_of_all(measurements, knowledge, pose, hand, settings), settings
@@ -60,6 +60,7 @@ def adjust(
         state_at(fit.state.pose, camera, start_points(measurements, camera, fit.state.pose), len(measurements.u_px)),
         principal_point_px=fit.state.principal_point_px,
         focal_length_m=fit.state.focal_length_m,
+        clock_offset_s=fit.state.clock_offset_s,
     )
     many = solve_many(
         measurements,
@@ -69,9 +70,8 @@ def adjust(
         unit_weights(measurements),
         tails=bool(np.any(found.weights.of_measurement != 1)),
     )
-    spread = spread_of_many(
-        spread, trailing_inverse(found.solution.done.upper, N_POSE), many.camera_covariance[-N_POSE:, -N_POSE:]
-    )
+    n = knowledge.n_sought
+    spread = spread_of_many(spread, trailing_inverse(found.solution.done.upper, n), many.camera_covariance[-n:, -n:])
     normalised = normalised_of_many(many, measurements.n_points)
     fit = Fit(
         many.state, many.z, many.q, many.weights, normalised, many.chi_squared, many.converged and found.converged
@@ -90,7 +90,7 @@ def _of_all(
     found = with_tails(
         measurements,
         knowledge,
-        Knowledge(knowledge.camera, hand),
+        replace(knowledge, hand=hand),
         state_at(pose, knowledge.camera, start_points(measurements, knowledge.camera, pose), len(measurements.u_px)),
         settings,
     )

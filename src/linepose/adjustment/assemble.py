@@ -22,7 +22,7 @@ from linepose.geometry import rotations
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.survey.observations import Survey
 
-_OPEN_SHARE: Final = 0.9  # of the hand measurement's sigma, above which the data have said nothing
+_OPEN_SHARE: Final = 0.9  # of a prior's sigma, above which the data have said nothing
 _INTERVAL: Final = (0.025, 0.975)
 
 
@@ -54,7 +54,11 @@ def assembled(
 ) -> Adjustment:
     """The result on the survey's grid, from the fit of all measurements and what tells its levels and its spread."""
     state, weights = fit.state, fit.weights
-    _, step_covariance = spread.moments()
+    _, sought_covariance = spread.moments()
+    step_covariance = sought_covariance[-N_POSE:, -N_POSE:]
+    clock_offset_s = clock_sigma_s = np.nan
+    if knowledge.clock_offset_sigma_s is not None:
+        clock_offset_s, clock_sigma_s = state.clock_offset_s, float(np.sqrt(sought_covariance[0, 0]))
     by_parameters = np.eye(N_POSE)
     by_parameters[3:, 3:] = np.linalg.inv(rotations.left_jacobian_so3(state.pose[3:]))
     grid = measurements.row, measurements.column, survey.u_px.shape
@@ -79,7 +83,9 @@ def assembled(
         measurement_weight=gridded(weights.of_measurement, *grid),
         normalised=gridded(fit.normalised, *grid),
         samples=_samples(state, spread, settings),
-        diagnostics=_diagnostics(measurements, knowledge, fit, found, curved, spread, step_covariance),
+        diagnostics=_diagnostics(measurements, knowledge, fit, found, curved, spread, step_covariance, clock_sigma_s),
+        clock_offset_s=clock_offset_s,
+        clock_offset_sigma_s=clock_sigma_s,
     )
 
 
@@ -87,7 +93,7 @@ def _samples(state: State, spread: Mixture, settings: AdjustmentSettings) -> pd.
     """Independent draws in a chain's columns: each its own walker of one step; log_likelihood is of its levels."""
     random = np.random.default_rng([settings.seed, 1])
     steps, component = spread.draw(random, settings.n_samples)
-    poses = stepped(state, steps)
+    poses = stepped(state, steps[:, -N_POSE:])
     return pd.DataFrame(
         {
             "walker": np.arange(len(steps), dtype=np.int64),
@@ -119,6 +125,7 @@ def _diagnostics(
     curved: Curvature,
     spread: Mixture,
     covariance: Floats,
+    clock_sigma_s: float,
 ) -> Diagnostics:
     disagreement = np.full(N_POSE, np.nan)
     open_directions: tuple[str, ...] = ()
@@ -132,6 +139,7 @@ def _diagnostics(
         disagreement_sigmas=disagreement,
         open_directions=open_directions,
         drift_known=measurements.timed,
+        clock_known=not clock_sigma_s > _OPEN_SHARE * (knowledge.clock_offset_sigma_s or np.inf),
     )
     return Diagnostics(
         **vars(quality),

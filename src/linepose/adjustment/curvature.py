@@ -1,13 +1,14 @@
-"""The curvature of chi squared in the pose, and what it does to the covariance.
+"""The curvature of chi squared in what is sought, and what it does to the covariance.
 
 Body poses are estimated with the camera's (errors in variables), and the normal equations N are built at the estimates,
-whose noise inflates them: N is the variance of the score, but the slope of the score is the Hessian H in the pose of
+whose noise inflates them: N is the variance of the score, but the slope of the score is the Hessian H in what is sought
+(the pose, and the clock offset where it is estimated) of
 
     psi = 1/2 min over points, body poses, principal point and focal length of chi^2
 
-so that the covariance of the pose is `H^-1 N H^-1`: the normal posterior's N^-1 mapped by `M = H^-1 N` on both sides.
-H by central differences of psi's gradient, which the envelope theorem gives: of what is minimised only the pose's
-normal equations are left.
+so that its covariance is `H^-1 N H^-1`: the normal posterior's N^-1 mapped by `M = H^-1 N` on both sides.
+H by central differences of psi's gradient, which the envelope theorem gives: of what is minimised only the
+normal equations of what is sought are left.
 """
 
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ import numpy as np
 
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import N_POSE, Pass, trailing_inverse
+from linepose.adjustment.normal import Pass, trailing_inverse
 from linepose.adjustment.process import Weights
 from linepose.adjustment.solve import Solution, solve
 from linepose.adjustment.state import Knowledge, State
@@ -33,7 +34,7 @@ _TOLERANCE: Final = 1e-5
 
 @dataclass(frozen=True)
 class Curvature:
-    """stretch (6, 6): M, in steps of position and small rotation; eigenvalues (6,): of H in units of N, ascending."""
+    """stretch (S, S): M of the S sought columns, pose last; eigenvalues (S,): of H in units of N, ascending."""
 
     stretch: Floats
     eigenvalues: Floats
@@ -48,10 +49,11 @@ def curvature(
     measurements: Measurements, knowledge: Knowledge, solution: Solution, levels: Levels, weights: Weights
 ) -> Curvature:
     """The curvature at a solution; the identity with NaN eigenvalues where a neighbour has no solution."""
-    covariance = trailing_inverse(solution.done.upper, N_POSE)
+    n = knowledge.n_sought
+    covariance = trailing_inverse(solution.done.upper, n)
     lower = np.linalg.cholesky(np.linalg.inv(covariance))
     directions = np.linalg.inv(lower)  # rows: steps of one sigma
-    hessian = np.empty((N_POSE, N_POSE))
+    hessian = np.empty((n, n))
     try:
         for i, direction in enumerate(directions):
             scores = [
@@ -60,7 +62,7 @@ def curvature(
             ]
             hessian[i] = directions @ (scores[0] - scores[1]) / (2 * STEP_SIGMAS)
     except EstimationError:
-        return Curvature(np.eye(N_POSE), np.full(N_POSE, np.nan))
+        return Curvature(np.eye(n), np.full(n, np.nan))
     values, vectors = np.linalg.eigh((hessian + hessian.T) / 2)
     held = np.clip(values, *HELD)
     stretch = directions.T @ (vectors / held) @ vectors.T @ lower.T
@@ -75,26 +77,26 @@ def _score(
     weights: Weights,
     step: Floats,
 ) -> Floats:
-    """Gradient (6,) of psi at a step (6,) of the pose from the solution, by that step."""
+    """Gradient (S,) of psi at a step (S,) of what is sought from the solution, by that step."""
     full = np.concatenate([_response(solution.done, step), step])
     state: State = solution.state.moved(full, solution.state.correction)
-    near = solve(measurements, knowledge, state, levels, weights, tolerance=_TOLERANCE, max_steps=12, pose_held=True)
-    gradient = pose_gradient(near.done)
-    gradient[3:] = rotations.left_jacobian_so3(step[3:]).T @ gradient[3:]
+    near = solve(measurements, knowledge, state, levels, weights, tolerance=_TOLERANCE, max_steps=12, n_held=len(step))
+    gradient = trailing_gradient(near.done, len(step))
+    gradient[-3:] = rotations.left_jacobian_so3(step[-3:]).T @ gradient[-3:]
     return gradient
 
 
-def pose_gradient(done: Pass) -> Floats:
-    """Gradient (6,) of half the least chi squared at fixed pose, by a step of position and small rotation."""
+def trailing_gradient(done: Pass, size: int) -> Floats:
+    """Gradient (size,) of half the least chi squared at fixed last columns, by a step of those."""
     n = len(done.upper) - 1
-    block = done.upper[n - N_POSE : n, n - N_POSE : n]
-    return -np.triu(block).T @ done.upper[n - N_POSE : n, n]
+    block = done.upper[n - size : n, n - size : n]
+    return -np.triu(block).T @ done.upper[n - size : n, n]
 
 
 def _response(done: Pass, step: Floats) -> Floats:
-    """How all other columns follow a step (6,) of the pose, by the linear model."""
+    """How all other columns follow a step (S,) of the last, by the linear model."""
     n = len(done.upper) - 1
-    inner = n - N_POSE
+    inner = n - len(step)
     right = -done.upper[:inner, inner:n] @ step
     out = np.zeros(inner)
     for i in range(inner - 1, -1, -1):

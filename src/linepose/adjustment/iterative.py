@@ -2,7 +2,7 @@
 
 `N x = A^T C^-1 A x + prior` takes one filter pass forwards and one backwards, whatever the number of points. Conjugate
 gradients solve it, preconditioned by the normal equations of innovations taken for independent, in which points are
-3 x 3 blocks and eliminated at once. Columns x are points (3 K), principal point, focal length and pose, as in `normal`.
+3 x 3 blocks and eliminated at once. Columns x are points (3 K), then those of the camera, as in `normal`.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 
 from linepose.adjustment.compiling import kernel
 from linepose.adjustment.linearise import Linearised
-from linepose.adjustment.normal import N_CAMERA, Prior
+from linepose.adjustment.normal import N_CAMERA, N_POSE, Prior
 from linepose.adjustment.whitening import Factor, unwhiten_columns, whiten
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
@@ -24,8 +24,8 @@ _MOST_ITERATIONS: Final = 2000
 class Equations:
     """Normal equations of L measurements of K points, as what they do to a column.
 
-    by_point (L, 2, 3) and camera (L, 2, 8): derivatives by point, and by principal point, focal length and pose;
-    point (L,); factor: of the error process.
+    by_point (L, 2, 3) and camera (L, 2, 9): derivatives by point, and by principal point, focal length, clock offset
+    and pose; point (L,); factor: of the error process.
     """
 
     by_point: Floats
@@ -40,11 +40,11 @@ class Equations:
         return len(self.prior.points)
 
     def times_design(self, columns: Floats) -> Floats:
-        """A times columns (3 K + 8, m), rows u and v of each measurement; (2 L, m)."""
+        """A times columns (3 K + 9, m), rows u and v of each measurement; (2 L, m)."""
         return _times_design(self.by_point, self.camera, self.point, columns)
 
     def times_design_transposed(self, rows: Floats) -> Floats:
-        """A^T times rows (2 L, m); (3 K + 8, m)."""
+        """A^T times rows (2 L, m); (3 K + 9, m)."""
         return _times_transposed(self.by_point, self.camera, self.point, self.n_points, rows)
 
     def information_of_rows(self, rows: Floats) -> Floats:
@@ -53,7 +53,7 @@ class Equations:
         return unwhiten_columns(self.factor, rows)
 
     def times_prior(self, columns: Floats) -> Floats:
-        """The prior's information times columns (3 K + 8, m)."""
+        """The prior's information times columns (3 K + 9, m)."""
         points = columns[:-N_CAMERA].reshape(self.n_points, 3, -1)
         return np.concatenate(
             [
@@ -63,12 +63,12 @@ class Equations:
         )
 
     def times_normal(self, columns: Floats) -> Floats:
-        """N times columns (3 K + 8, m)."""
+        """N times columns (3 K + 9, m)."""
         weighted = self.information_of_rows(self.times_design(columns))
         return self.times_design_transposed(weighted) + self.times_prior(columns)
 
     def right_side(self, residual: Floats) -> Floats:
-        """`A^T C^-1 e + prior` of residuals (2 L,); (3 K + 8, 1)."""
+        """`A^T C^-1 e + prior` of residuals (2 L,); (3 K + 9, 1)."""
         weighted = self.information_of_rows(residual[:, None].copy())
         prior = np.concatenate([self.prior.points_vector.ravel(), self.prior.camera_vector])
         return self.times_design_transposed(weighted) + prior[:, None]
@@ -76,7 +76,9 @@ class Equations:
 
 def equations(linearised: Linearised, point: np.ndarray, factor: Factor, prior: Prior) -> Equations:
     """The normal equations of a linear model and the factor of its error process."""
-    camera = np.ascontiguousarray(np.concatenate([linearised.by_theta[..., 6:], linearised.by_theta[..., :6]], axis=2))
+    camera = np.ascontiguousarray(
+        np.concatenate([linearised.by_theta[..., N_POSE:], linearised.by_theta[..., :N_POSE]], axis=2)
+    )
     return Equations(linearised.by_point, camera, point, factor, prior)
 
 
@@ -84,7 +86,7 @@ def equations(linearised: Linearised, point: np.ndarray, factor: Factor, prior: 
 class Blocks:
     """Normal equations with independent measurements, factored.
 
-    points (K, 3, 3): inverted; coupling (K, 3, 8): of points and camera; camera (8, 8): its reduced matrix, inverted.
+    points (K, 3, 3): inverted; coupling (K, 3, 9): of points and camera; camera (9, 9): its reduced matrix, inverted.
     """
 
     points: Floats
@@ -92,7 +94,7 @@ class Blocks:
     camera: Floats
 
     def solve(self, columns: Floats) -> Floats:
-        """The inverse times columns (3 K + 8, m)."""
+        """The inverse times columns (3 K + 9, m)."""
         points = columns[:-N_CAMERA].reshape(len(self.points), 3, -1)
         first = np.einsum("kij,kjm->kim", self.points, points)
         camera = self.camera @ (columns[-N_CAMERA:] - np.einsum("kic,kim->cm", self.coupling, first))
@@ -118,7 +120,7 @@ def blocks(system: Equations) -> Blocks:
 
 
 def conjugate_gradients(system: Equations, inverse: Blocks, right: Floats, tolerance: float) -> tuple[Floats, int]:
-    """N^-1 times columns (3 K + 8, m), and the number of iterations.
+    """N^-1 times columns (3 K + 9, m), and the number of iterations.
 
     It ends when the preconditioned residual of every column is `tolerance` of the right side's. Raises EstimationError
     where that takes too long.

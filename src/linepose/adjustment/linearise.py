@@ -5,13 +5,15 @@ the point is seen at
 
     u = f x (1 + k1 x^2 + k2 x^4) + u0,   v = f y,   x = q_x / q_z,   y = q_y / q_z,   f in pixels.
 
-The line observes u, and v = 0 at the time of its exposure. The body pose is the reported one plus a correction c, all
-six numbers added: position (m), Euler angles (rad). The linear model of a measurement is
+The line observes u, and v = 0 at the time of its exposure. The body pose is the reported one, moved along the body's
+rate by the clock offset, plus a correction c, all six numbers added: position (m), Euler angles (rad). The linear model
+of a measurement is
 
     e = y - h + J c0 = J_theta d_theta + J_P dP + J c + n
 
 at the present correction c0, so that the corrections themselves, not steps of them, are what the error process knows.
-theta: lever arm r (3, m), small rotation on the left of R_bc (3, rad), principal point u0 (px), focal length (m).
+theta: lever arm r (3, m), small rotation on the left of R_bc (3, rad), principal point u0 (px), focal length (m), clock
+offset (s).
 """
 
 from typing import Final, NamedTuple
@@ -21,7 +23,7 @@ import numpy as np
 from linepose.adjustment.compiling import kernel
 from linepose.arrays import Floats
 
-N_THETA: Final = 8
+N_THETA: Final = 9
 
 
 class Optics(NamedTuple):
@@ -39,7 +41,7 @@ class Optics(NamedTuple):
 class Linearised(NamedTuple):
     """L measurements, rows u and v in pixels.
 
-    residual_px (L, 2): y - h; by_theta (L, 2, 8); by_point (L, 2, 3); by_body (L, 2, 6).
+    residual_px (L, 2): y - h; by_theta (L, 2, 9); by_point (L, 2, 3); by_body (L, 2, 6).
     """
 
     residual_px: Floats
@@ -62,12 +64,15 @@ def empty_linearised(n_measurements: int) -> Linearised:
 def linearise(
     u_px: Floats,
     body_pose: Floats,
+    rate: Floats,
     point_of: np.ndarray,
     points_m: Floats,
     optics: Optics,
     out: Linearised,
 ) -> int:
     """Fill `out` at body poses (L, 6), corrected, and points (K, 3) of which measurement l sees `point_of[l]`.
+
+    rate (L, 6): of the body (m/s, rad/s), along which a clock offset moves it; zero where none is estimated.
 
     Returns the number of measurements whose point is not in front of the camera; `out` is of use only if it is none.
     """
@@ -129,4 +134,8 @@ def linearise(
             body[3] = t0 * w00 + t1 * w10 + t2 * w20
             body[4] = t1 * cy - t0 * sy
             body[5] = t2
+            moved = 0.0
+            for i in range(6):
+                moved += body[i] * rate[line, i]
+            theta[8] = moved
     return behind

@@ -40,8 +40,8 @@ _WEIGHT_SUM: Final = DEGREES_OF_FREEDOM + MEASUREMENT_DIMENSION
 class ManySolution:
     """A minimum of chi squared over all measurements.
 
-    camera_covariance (8, 8): of principal point, focal length and pose; whitened (L, 2): residuals; z (L, 6), q (N, 6):
-    the process; weights: of the tails; chi_squared; n_steps; converged.
+    camera_covariance (9, 9): of principal point, focal length, clock offset and pose; whitened (L, 2): residuals; z (L,
+    6), q (N, 6): the process; weights: of the tails; chi_squared; n_steps; converged.
     """
 
     state: State
@@ -88,7 +88,8 @@ def solve_many(
         linearised = empty_linearised(len(measurements.u_px))
         if linearise(
             measurements.u_px,
-            measurements.body_pose + state.correction,
+            state.body_poses(measurements),
+            knowledge.rates(measurements),
             measurements.point,
             state.points_m,
             state.optics(knowledge.camera),
@@ -129,7 +130,7 @@ def solve_many(
 
 
 def spread_of_many(few: Mixture, few_covariance: Floats, covariance: Floats) -> Mixture:
-    """The mixture of few points in units of the pose's covariance (6, 6) of many, from that of few."""
+    """The mixture of few points in units of the covariance (S, S) of many, from that of few."""
     scale = np.linalg.cholesky(covariance) @ np.linalg.inv(np.linalg.cholesky(few_covariance))
     return replace(few, mean=few.mean @ scale.T, covariance=scale @ few.covariance @ scale.T)
 

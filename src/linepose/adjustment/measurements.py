@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from linepose.adjustment.motion import lateness_of_views
+from linepose.adjustment.motion import body_rates, lateness_of_views
 from linepose.adjustment.process import ErrorStructure
 from linepose.arrays import Floats
 from linepose.errors import InputError
@@ -34,7 +34,8 @@ class Measurements:
 
     row, column (L,): where in the survey each is; number (N,): of the views, in order of time; view (L,), point (L,):
     row of N and K; points (K,): columns of the survey; u_px (L,); body_pose (L, 6): position (m), Euler angles (rad);
-    timed: whether the measurements have times; known: of the K points.
+    rate (L, 6): of the body poses by time (s), zero where it is not known; timed: whether the measurements have times;
+    known: of the K points.
     """
 
     row: NDArray[np.int64]
@@ -45,6 +46,7 @@ class Measurements:
     points: NDArray[np.int64]
     u_px: Floats
     body_pose: Floats
+    rate: Floats
     structure: ErrorStructure
     timed: bool
     known: KnownPoints
@@ -88,7 +90,8 @@ def measurements_from_survey(
     covariance = survey.covariance[row, column]
     _check_finite(survey, row, column, body_pose, covariance)
     begins = np.diff(view, prepend=-1) != 0
-    motion, late_px = lateness_of_views(body_pose, time_us, view, camera.sigmas.v_px, line_period_s)
+    rate = body_rates(body_pose, time_us, view)
+    motion, late_px = lateness_of_views(rate, time_us, view, camera.sigmas.v_px, line_period_s)
     gap_s = np.diff(time_us.astype(float), prepend=-np.inf) * 1e-6
     points, point = np.unique(column, return_inverse=True)
     structure = ErrorStructure(
@@ -109,6 +112,7 @@ def measurements_from_survey(
         points=points.astype(np.int64),
         u_px=np.ascontiguousarray(survey.u_px[row, column]),
         body_pose=body_pose,
+        rate=np.nan_to_num(rate, nan=0.0),
         structure=structure,
         timed=timed,
         known=KnownPoints(known.position_m[points], known.information[points]),

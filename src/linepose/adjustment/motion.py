@@ -1,8 +1,9 @@
-"""How far the body moves in one line: what a measurement that is a line late is wrong by.
+"""How the body moves: its rates, along which a clock offset moves it, and how far it moves in one line.
 
-Across the scan line no pixel is measured but a time, so noise there is lateness. Its image follows the camera's pose as
-the residuals do, which noise in pixels would not. The rate is a straight line through the reported poses of a view; the
-duration of a line is what the time stamps are multiples of.
+A measurement that is a line late is wrong by the motion in one line. Across the scan line no pixel is measured but a
+time, so noise there is lateness. Its image follows the camera's pose as the residuals do, which noise in pixels would
+not. The rate is a straight line through the reported poses of a view; the duration of a line is what the time stamps
+are multiples of.
 """
 
 from typing import Final
@@ -60,18 +61,17 @@ def _differences(ascending_us: NDArray[np.int64]) -> Floats:
 
 
 def lateness_of_views(
-    body_pose: Floats,
+    rates: Floats,
     time_us: NDArray[np.int64],
     view: NDArray[np.int64],
     sigma_v_px: float,
     period_s: float | None,
 ) -> tuple[Floats, Floats]:
-    """Motion in one line (L, 6), and where it is not known the sigma across the line (L,) that stands for it (px).
+    """Motion in one line (L, 6) at rates (L, 6), and a sigma across the line (L,) that stands for it (px).
 
     Of the two one is zero. Without a period given, and where the time stamps do not tell it, motion is not known.
     """
     period = period_s if period_s is not None else line_period_s(time_us, view)
-    rates = body_rates(body_pose, time_us, view)
     motion = np.nan_to_num(rates * (period or 0.0), nan=0.0)
     moves = np.any(motion != 0, axis=1)
     return motion, np.where(moves, 0.0, 2.0 * sigma_v_px)

@@ -1,8 +1,9 @@
-"""Normal equations of the whitened linear model: points, intrinsics and pose in one triangular factor.
+"""Normal equations of the whitened linear model: points, intrinsics, clock offset and pose in one triangular factor.
 
-Columns are ordered: points (3 K), principal point, focal length, pose (6), and the residual last. The Cholesky factor
-of their products holds all that the adjustment asks for: the residual's last pivot is the least chi squared, the other
-pivots are the determinant, and the trailing blocks are marginal: of the pose, and of pose and intrinsics.
+Columns are ordered: points (3 K), principal point, focal length, clock offset, pose (6), and the residual last. The
+Cholesky factor of their products holds all that the adjustment asks for: the residual's last pivot is the least chi
+squared, the other pivots are the determinant, and the trailing blocks are marginal: of the pose, of pose and clock
+offset, and of all that is not a point. Without an estimate of the clock offset its column is zero and its prior one.
 """
 
 from typing import Final, NamedTuple
@@ -16,16 +17,18 @@ from linepose.adjustment.whitening import Factor, factorise, whiten
 from linepose.arrays import Floats
 
 N_INTRINSICS: Final = 2
+N_SHARED: Final = N_INTRINSICS + 1  # with the clock offset
 N_POSE: Final = 6
-N_CAMERA: Final = N_INTRINSICS + N_POSE
+N_CAMERA: Final = N_SHARED + N_POSE
 _WIDTH: Final = 4  # columns are padded to a multiple of it
 
 
 class Prior(NamedTuple):
     """What is known beside the measurements, as quadratic forms about the present estimate.
 
-    camera (8, 8), camera_vector (8,): information of principal point, focal length and pose, and its product with what
-    the step ought to be; points (K, 3, 3), points_vector (K, 3): the same of points; chi_squared: with no step.
+    camera (9, 9), camera_vector (9,): information of principal point, focal length, clock offset and pose, and its
+    product with what the step ought to be; points (K, 3, 3), points_vector (K, 3): the same of points; chi_squared:
+    with no step.
     """
 
     camera: Floats
@@ -64,10 +67,10 @@ def design(linearised: Linearised, correction: Floats, point_of: np.ndarray, n_p
             start = 3 * point_of[line]
             for i in range(3):
                 out[start + i] = linearised.by_point[line, row, i]
-            out[first], out[first + 1] = theta[6], theta[7]
+            out[first], out[first + 1], out[first + 2] = theta[6], theta[7], theta[8]
             residual = linearised.residual_px[line, row]
             for i in range(6):
-                out[first + 2 + i] = theta[i]
+                out[first + N_SHARED + i] = theta[i]
                 residual += linearised.by_body[line, row, i] * correction[line, i]
             out[first + N_CAMERA] = residual
     return rows

@@ -1,8 +1,8 @@
-"""The posterior of the pose: a mixture over draws of the levels.
+"""The posterior of what is sought, the pose and perhaps the clock offset: a mixture over draws of the levels.
 
 Levels are drawn around the REML optimum from a multivariate Student-t with the curvature there, and weighted by the
-REML density over it. Given levels, the pose is normal about its linearised value with the covariance of the normal
-equations; the curvature's stretch M maps mean and covariance of each about the mode.
+REML density over it. Given levels, what is sought is normal about its linearised value with the covariance of the
+normal equations; the curvature's stretch M maps mean and covariance of each about the mode.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from linepose.adjustment.importance import smoothed_weights
-from linepose.adjustment.normal import N_POSE, trailing_inverse
+from linepose.adjustment.normal import trailing_inverse
 from linepose.adjustment.proposal import Proposal, split_at_mode
 from linepose.adjustment.reml import NOTHING, Restricted
 from linepose.arrays import Floats
@@ -22,9 +22,9 @@ STAGE_SHARES: Final = (0.25, 0.25, 0.5)  # of the draws
 
 @dataclass(frozen=True)
 class Mixture:
-    """D components of the pose's posterior, as steps of position and small rotation from the mode.
+    """D components of the posterior of the S last columns, as steps from the mode: position and small rotation last.
 
-    weight (D,), mean (D, 6), covariance (D, 6, 6); log_levels (D, 7); negative_log_density (D,): of the levels;
+    weight (D,), mean (D, S), covariance (D, S, S); log_levels (D, 7); negative_log_density (D,): of the levels;
     pareto_shape: of the weights' tail.
     """
 
@@ -41,23 +41,25 @@ class Mixture:
         return float(1 / np.sum(self.weight**2))
 
     def moments(self) -> tuple[Floats, Floats]:
-        """Mean (6,) and covariance (6, 6) of the step from the mode."""
+        """Mean (S,) and covariance (S, S) of the step from the mode."""
         mean = self.weight @ self.mean
         off = self.mean - mean
         return mean, np.einsum("d,dij->ij", self.weight, self.covariance + off[:, :, None] * off[:, None, :])
 
     def draw(self, random: np.random.Generator, count: int) -> tuple[Floats, np.ndarray]:
-        """Steps (count, 6), and the component (count,) of each; components in proportion to their weights."""
+        """Steps (count, S), and the component (count,) of each; components in proportion to their weights."""
         edges = np.cumsum(self.weight)
         index = np.searchsorted(edges / edges[-1], (np.arange(count) + random.random()) / count).clip(0, len(edges) - 1)
         roots = np.linalg.cholesky(self.covariance)
-        steps = self.mean[index] + np.einsum("nij,nj->ni", roots[index], random.standard_normal((count, N_POSE)))
+        steps = self.mean[index] + np.einsum(
+            "nij,nj->ni", roots[index], random.standard_normal((count, self.mean.shape[1]))
+        )
         order = random.permutation(count)
         return steps[order], index[order]
 
 
 def mixture(restricted: Restricted, mode: Floats, stretch: Floats, n_draws: int, seed: int) -> Mixture:
-    """The pose's posterior, from the mode of the free levels' logarithms (F,) and the curvature's stretch (6, 6).
+    """The posterior, from the mode of the free levels' logarithms (F,) and the curvature's stretch (S, S).
 
     The first draws come from the proposal at the mode, later ones from a proposal fitted to all before; each counts as
     of the mixture of all (deterministic mixture, Owen and Zhou 2000).
@@ -65,11 +67,11 @@ def mixture(restricted: Restricted, mode: Floats, stretch: Floats, n_draws: int,
     stages = [max(int(share * n_draws), 1) for share in STAGE_SHARES]
     stages[-1] = n_draws - sum(stages[:-1])
     base = split_at_mode(restricted, mode)
-    proposals, drawn = [base], [_components(restricted, base.draw(stages[0], seed))]
+    proposals, drawn = [base], [_components(restricted, base.draw(stages[0], seed), len(stretch))]
     for stage, count in enumerate(stages[1:], start=1):
         weight, _ = _weights(proposals, stages[:stage], drawn)
         proposals.append(base.fitted(np.concatenate([part.logs for part in drawn]), weight))
-        drawn.append(_components(restricted, proposals[-1].draw(count, seed + stage)))
+        drawn.append(_components(restricted, proposals[-1].draw(count, seed + stage), len(stretch)))
     weight, shape = _weights(proposals, stages, drawn)
     logs, density, mean, covariance = (np.concatenate([part[i] for part in drawn]) for i in range(4))
     return Mixture(
@@ -83,7 +85,7 @@ def mixture(restricted: Restricted, mode: Floats, stretch: Floats, n_draws: int,
 
 
 class _Drawn(NamedTuple):
-    """Logarithms of levels (D, F), their negative log-density (D,), and the pose's mean (D, 6) and covariance there."""
+    """Logarithms of levels (D, F), their negative log-density (D,), mean (D, S) and covariance there."""
 
     logs: Floats
     density: Floats
@@ -91,19 +93,19 @@ class _Drawn(NamedTuple):
     covariance: Floats
 
 
-def _components(restricted: Restricted, logs: Floats) -> _Drawn:
+def _components(restricted: Restricted, logs: Floats, size: int) -> _Drawn:
     count = len(logs)
-    density, mean, covariance = np.empty(count), np.empty((count, N_POSE)), np.empty((count, N_POSE, N_POSE))
+    density, mean, covariance = np.empty(count), np.empty((count, size)), np.empty((count, size, size))
     for k, row in enumerate(logs):
         done = restricted.done(row)
         density[k] = restricted.negative_log_density_of(done, row)
         if density[k] >= NOTHING:  # of no weight, but it has to be a normal distribution
-            mean[k], covariance[k] = 0.0, np.eye(N_POSE)
+            mean[k], covariance[k] = 0.0, np.eye(size)
             continue
         n = len(done.upper) - 1
-        block = np.triu(done.upper[n - N_POSE : n, n - N_POSE : n])
-        covariance[k] = trailing_inverse(done.upper, N_POSE)
-        mean[k] = covariance[k] @ (block.T @ done.upper[n - N_POSE : n, n])
+        block = np.triu(done.upper[n - size : n, n - size : n])
+        covariance[k] = trailing_inverse(done.upper, size)
+        mean[k] = covariance[k] @ (block.T @ done.upper[n - size : n, n])
     return _Drawn(logs, density, mean, covariance)
 
 

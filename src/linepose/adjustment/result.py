@@ -1,5 +1,6 @@
 """What the adjustment finds."""
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -23,7 +24,8 @@ class Quality:
     converged: chi squared and levels; least_eigenvalue: of the curvature in units of the normal equations, NaN where it
     could not be had; effective_draws, pareto_shape: of the draws of the levels; disagreement_sigmas (6,): of the hand
     measurement from what the data alone say, NaN without one; open_directions: names of the pose's parameters that the
-    data leave to the hand measurement; drift_known: whether there are times.
+    data leave to the hand measurement; drift_known: whether there are times; clock_known: whether the data tell the
+    clock offset where it was sought.
     """
 
     converged: bool
@@ -33,6 +35,7 @@ class Quality:
     disagreement_sigmas: Floats
     open_directions: tuple[str, ...]
     drift_known: bool
+    clock_known: bool
 
 
 @dataclass(frozen=True)
@@ -56,13 +59,15 @@ class Adjustment:
     """The estimated pose, how sure it is, and what the errors were; N observations of M points, as in the survey.
 
     pose (6,): at the mode, with a rotation vector; covariance (6, 6): the posterior's, of the pose's parameters;
-    principal_point_px, focal_length_m; points_m (M, 3): from the survey's origin, NaN for a point left out;
-    levels: at their mode; level_intervals (7, 2): what holds each with 95 %, NaN for one that was not estimated;
-    corrections (N, M, 6): of the reported body poses (m, rad); constants (N, 6), drifts (N, M, 6): of the process, in
-    its own units; view_weight (N,), measurement_weight (N, M): 1 is as good as the levels say, towards 0 is bad;
-    normalised (N, M, 2): whitened residuals along and across the line, each a standard normal number if the model is
-    right; samples: independent draws of the pose in the columns of a chain (walker, step, pose, log_likelihood).
-    Everything of a measurement is NaN where there is none.
+    principal_point_px, focal_length_m; points_m (M, 3): from the survey's origin, NaN for a point left out; levels: at
+    their mode; level_intervals (7, 2): what holds each with 95 %, NaN for one that was not estimated; corrections (N,
+    M, 6): of the reported body poses (m, rad); constants (N, 6), drifts (N, M, 6): of the process, in its own units;
+    view_weight (N,), measurement_weight (N, M): 1 is as good as the levels say, towards 0 is bad; normalised (N, M, 2):
+    whitened residuals along and across the line, each a standard normal number if the model is right; samples:
+    independent draws of the pose in the columns of a chain (walker, step, pose, log_likelihood); clock_offset_s: what
+    is added to the scan's time stamps to get the navigation's time, positive if the stamps are too early, and
+    clock_offset_sigma_s: the posterior's, both NaN where it was not estimated. Everything of a measurement is NaN where
+    there is none.
     """
 
     pose: Floats
@@ -80,6 +85,8 @@ class Adjustment:
     normalised: Floats
     samples: pd.DataFrame
     diagnostics: Diagnostics
+    clock_offset_s: float = math.nan
+    clock_offset_sigma_s: float = math.nan
 
     @property
     def sigma(self) -> Floats:
@@ -123,6 +130,8 @@ def warnings_of(quality: Quality) -> tuple[str, ...]:
         )
     if quality.open_directions:
         said.append(f"the data leave {', '.join(quality.open_directions)} to the hand measurement: add other motions")
+    if not quality.clock_known:
+        said.append("the data leave the clock offset to its prior: add views at other speeds or the other way")
     if not quality.drift_known:
         said.append("without times drift of the navigation is not known and not allowed for")
     return tuple(said)

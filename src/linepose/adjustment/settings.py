@@ -23,6 +23,11 @@ class AdjustmentSettings(Settings):
     line_period_s: PositiveFloat | None = Field(
         None, description="Duration of a line (s); what time stamps are multiples of if null."
     )
+    clock_offset_sigma_s: PositiveFloat | None = Field(
+        None,
+        description="How far the clocks of scan and navigation may differ, as sigma of a normal distribution about "
+        "zero (s); the offset is then estimated with the pose. Not estimated if null.",
+    )
     tails: bool = Field(
         True, description="Whether views and single measurements may err far more than the rest, where the data say so."
     )

@@ -16,7 +16,7 @@ import numpy as np
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import Linearised, empty_linearised, linearise
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import N_POSE, Pass, Prior, design, one_pass, solve_step, whitened_residual
+from linepose.adjustment.normal import N_CAMERA, N_POSE, Pass, Prior, design, one_pass, solve_step, whitened_residual
 from linepose.adjustment.process import Components, ErrorImage, Weights, components, corrections, error_image
 from linepose.adjustment.state import Knowledge, State
 from linepose.adjustment.whitening import unwhiten
@@ -72,7 +72,8 @@ def model_at(measurements: Measurements, knowledge: Knowledge, state: State) -> 
     linearised = empty_linearised(len(measurements.u_px))
     behind = linearise(
         measurements.u_px,
-        measurements.body_pose + state.correction,
+        state.body_poses(measurements),
+        knowledge.rates(measurements),
         measurements.point,
         state.points_m,
         state.optics(knowledge.camera),
@@ -102,13 +103,13 @@ def solve(
     tolerance: float = 1e-9,
     max_steps: int = 60,
     damping: float = 0.0,
-    pose_held: bool = False,
+    n_held: int = 0,
 ) -> Solution:
     """The minimum of chi squared near a start.
 
     It has converged when a step would lower chi squared by less than `tolerance`, and chi squared moves by less than
-    that when it is linearised anew. With `pose_held` the pose keeps its start. Raises EstimationError where a point is
-    behind the camera at the start, or the normal equations are singular.
+    that when it is linearised anew. The last `n_held` columns, of the pose and what else is sought, keep their start.
+    Raises EstimationError where a point is behind the camera at the start, or the normal equations are singular.
     """
     model = model_at(measurements, knowledge, start)
     if model is None:
@@ -124,7 +125,7 @@ def solve(
                 "adjustment: singular normal equations; add observations from other directions, or drop points that "
                 "are seen from one direction only"
             )
-        step = _step(done, damping, pose_held)
+        step = _step(done, damping, n_held)
         dual = unwhiten(done.factor, whitened_residual(done, step))
         correction, z, q = corrections(structure, process, model.linearised, levels, weights, dual)
         gain = done.chi_squared_before - _after(done, step)
@@ -160,12 +161,12 @@ def _held(step: Floats) -> Floats:
     return step / share
 
 
-def _step(done: Pass, damping: float, pose_held: bool) -> Floats:
-    n_points = len(done.upper) - 1 - 8
-    if not pose_held:
-        return solve_step(done.upper, n_points, damping)
+def _step(done: Pass, damping: float, n_held: int) -> Floats:
     n = len(done.upper) - 1
-    inner = n - N_POSE
+    first_free = n - N_CAMERA
+    if n_held == 0:
+        return solve_step(done.upper, first_free, damping)
+    inner = n - n_held
     cut = done.upper[:inner, [*range(inner), n]]
     square = np.vstack([cut, np.zeros(inner + 1)])
-    return np.concatenate([solve_step(square, n_points, damping), np.zeros(N_POSE)])
+    return np.concatenate([solve_step(square, first_free, damping), np.zeros(n_held)])

@@ -7,7 +7,7 @@ import numpy as np
 from linepose.adjustment.hand_measured import HandMeasuredPrior
 from linepose.adjustment.linearise import Optics
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import N_CAMERA, N_INTRINSICS, Prior
+from linepose.adjustment.normal import N_CAMERA, N_INTRINSICS, N_POSE, N_SHARED, Prior
 from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera
@@ -15,16 +15,18 @@ from linepose.geometry.camera import Camera
 
 @dataclass(frozen=True)
 class State:
-    """Camera, points and body poses.
+    """Camera, clock, points and body poses.
 
-    position_m (3,), rotation (3, 3): of the camera in the body; principal_point_px, focal_length_m; points_m (K, 3);
-    correction (L, 6): of the body poses.
+    position_m (3,), rotation (3, 3): of the camera in the body; principal_point_px, focal_length_m; clock_offset_s:
+    what is added to the scan's time stamps to get the navigation's time; points_m (K, 3); correction (L, 6): of the
+    body poses, beside what the clock offset moves them.
     """
 
     position_m: Floats
     rotation: Floats
     principal_point_px: float
     focal_length_m: float
+    clock_offset_s: float
     points_m: Floats
     correction: Floats
 
@@ -32,6 +34,10 @@ class State:
     def pose(self) -> Floats:
         """The pose (6,) with a rotation vector."""
         return np.concatenate([self.position_m, rotations.rotation_vector_from_matrix(self.rotation)])
+
+    def body_poses(self, measurements: Measurements) -> Floats:
+        """Poses (L, 6) of the body as they are now taken to be."""
+        return measurements.body_pose + self.clock_offset_s * measurements.rate + self.correction
 
     def optics(self, camera: Camera) -> Optics:
         """As the kernels take it."""
@@ -46,26 +52,28 @@ class State:
         )
 
     def moved(self, step: Floats, correction: Floats) -> "State":
-        """The state after a step (3 K + 8,) of points, principal point, focal length and pose, with corrections."""
+        """The state after a step (3 K + 9,) of all columns of the normal equations, with corrections."""
         points, camera = step[:-N_CAMERA].reshape(-1, 3), step[-N_CAMERA:]
-        turn = rotations.matrix_from_rotation_vector(camera[N_INTRINSICS + 3 :])
+        turn = rotations.matrix_from_rotation_vector(camera[N_SHARED + 3 :])
         return State(
-            self.position_m + camera[N_INTRINSICS : N_INTRINSICS + 3],
+            self.position_m + camera[N_SHARED : N_SHARED + 3],
             turn @ self.rotation,
             self.principal_point_px + float(camera[0]),
             self.focal_length_m + float(camera[1]),
+            self.clock_offset_s + float(camera[2]),
             self.points_m + points,
             correction,
         )
 
 
 def state_at(pose: Floats, camera: Camera, points_m: Floats, n_measurements: int) -> State:
-    """The state at a pose (6,) and points (K, 3), intrinsics as the camera's file has them, nothing corrected."""
+    """The state at a pose (6,) and points (K, 3): intrinsics of the camera's file, no clock offset, no corrections."""
     return State(
         np.asarray(pose[:3], dtype=float),
         rotations.matrix_from_rotation_vector(pose[3:]),
         camera.principal_point_px,
         camera.focal_length_m,
+        0.0,
         points_m,
         np.zeros((n_measurements, 6)),
     )
@@ -73,10 +81,26 @@ def state_at(pose: Floats, camera: Camera, points_m: Floats, n_measurements: int
 
 @dataclass(frozen=True)
 class Knowledge:
-    """The camera as its file has it, and the hand-measured pose where it is a prior."""
+    """The camera as its file has it, the hand-measured pose where it is a prior, and how far clocks may differ.
+
+    clock_offset_sigma_s: of the clock offset's prior about zero; None where it is zero and not estimated.
+    """
 
     camera: Camera
     hand: HandMeasuredPrior | None
+    clock_offset_sigma_s: float | None = None
+
+    @property
+    def n_sought(self) -> int:
+        """How many of the last columns are sought: those of the pose, and before them the clock offset's if estimated.
+
+        All other columns are nuisance.
+        """
+        return N_POSE + (self.clock_offset_sigma_s is not None)
+
+    def rates(self, measurements: Measurements) -> Floats:
+        """Rates (L, 6) of the bodies along which the clock offset moves them; zero where it is not estimated."""
+        return measurements.rate if self.clock_offset_sigma_s is not None else np.zeros_like(measurements.rate)
 
     def prior(self, state: State, measurements: Measurements) -> Prior:
         """As quadratic forms about a state."""
@@ -91,10 +115,14 @@ class Knowledge:
         information[:N_INTRINSICS, :N_INTRINSICS] = np.diag(sigma**-2)
         vector[:N_INTRINSICS] = error / sigma**2
         chi_squared = float(np.sum((error / sigma) ** 2))
+        clock_sigma_s = self.clock_offset_sigma_s or 1.0
+        information[N_INTRINSICS, N_INTRINSICS] = clock_sigma_s**-2
+        vector[N_INTRINSICS] = -state.clock_offset_s / clock_sigma_s**2
+        chi_squared += (state.clock_offset_s / clock_sigma_s) ** 2
         if self.hand is not None:
             pose, pose_vector, pose_chi_squared = self.hand.information(state.position_m, state.rotation)
-            information[N_INTRINSICS:, N_INTRINSICS:] = pose
-            vector[N_INTRINSICS:] = pose_vector
+            information[N_SHARED:, N_SHARED:] = pose
+            vector[N_SHARED:] = pose_vector
             chi_squared += pose_chi_squared
         known = measurements.known
         off = known.position_m - state.points_m

@@ -27,7 +27,7 @@ def vector_matrix(vector):
 
 
 def project(camera, lever, rotation, step, body, point):
-    """Pixel (u, v) at a step (8,): lever arm, small rotation on the left, principal point, focal length."""
+    """Pixel (u, v) at a step: lever arm, small rotation on the left, principal point, focal length."""
     turned = vector_matrix(step[3:6]) @ rotation
     q = turned.T @ (euler_matrix(body[3:]).T @ (point - body[:3]) - lever - step[:3])
     x, f = q[0] / q[2], (camera.focal_length_m + step[7]) / camera.pixel_pitch_m
@@ -45,12 +45,15 @@ def complex_step(function, argument):
 
 
 def linearised(camera, lever, rotation, measurements, points, bodies):
-    """Residual (2 L,), and by theta (2 L, 8), point (2 L, 3), body (2 L, 6)."""
+    """Residual (2 L,), and by theta (2 L, 9), point (2 L, 3), body (2 L, 6); clock offset last of theta."""
     residual, by_theta, by_point, by_body = [], [], [], []
     for line, point in enumerate(measurements.point):
-        body, p, none = bodies[line], points[point], np.zeros(8)
+        body, p, none = bodies[line], points[point], np.zeros(9)
         residual.append([measurements.u_px[line], 0] - project(camera, lever, rotation, none, body, p))
-        by_theta.append(complex_step(lambda s, b=body, p=p: project(camera, lever, rotation, s, b, p), none))
+        rate = measurements.rate[line]
+        by_theta.append(
+            complex_step(lambda s, b=body, r=rate, p=p: project(camera, lever, rotation, s, b + r * s[8], p), none)
+        )
         by_point.append(complex_step(lambda x, b=body: project(camera, lever, rotation, np.zeros(8), b, x), p))
         by_body.append(complex_step(lambda x, p=p: project(camera, lever, rotation, np.zeros(8), x, p), body))
     return tuple(np.concatenate(part) for part in (residual, by_theta, by_point, by_body))
@@ -92,7 +95,7 @@ def measurement_covariance(by_body, of_bodies, levels, camera, line_weight):
 
 
 def design(measurements, by_theta, by_point):
-    """Columns in the order of the normal equations: points, principal point, focal length, pose."""
+    """Columns in the order of the normal equations: points, principal point, focal length, clock offset, pose."""
     n = len(measurements.u_px)
     points = np.zeros((2 * n, 3 * measurements.n_points))
     for i, k in enumerate(measurements.point):

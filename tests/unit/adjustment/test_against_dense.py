@@ -41,10 +41,10 @@ class Case:
         random = np.random.default_rng(5)
         survey = survey or timed_survey.without(timed_survey.make_survey(5, 6, seed=3), (0, 1), (3, 2), (4, 5))
         self.measurements = m = measurements_from_survey(survey, CAMERA, known, line_period_s=timed_survey.LINE_S)
-        self.knowledge = Knowledge(CAMERA, hand_measured(HAND, covariance_of_sigmas(0.1, np.deg2rad(2))))
+        self.knowledge = Knowledge(CAMERA, hand_measured(HAND, covariance_of_sigmas(0.1, np.deg2rad(2))), 0.02)
         n = len(m.u_px)
         start = state_at(timed_survey.POSE, CAMERA, start_points(m, CAMERA, timed_survey.POSE), n)
-        self.state = replace(start, correction=1e-3 * random.normal(size=(n, 6)))
+        self.state = replace(start, correction=1e-3 * random.normal(size=(n, 6)), clock_offset_s=0.03)
         self.levels = levels
         self.weights = Weights(random.uniform(0.3, 1.2, m.n_views), random.uniform(0.3, 1.2, n))
         self.model = model_at(m, self.knowledge, self.state)
@@ -54,7 +54,7 @@ class Case:
     def _dense(self, survey):
         m, state = self.measurements, self.state
         residual, by_theta, by_point, by_body = dense.linearised(
-            CAMERA, state.position_m, state.rotation, m, state.points_m, m.body_pose + state.correction
+            CAMERA, state.position_m, state.rotation, m, state.points_m, state.body_poses(m)
         )
         time_s = survey.time_us[m.row, m.column] * 1e-6
         weights = self.weights
@@ -75,7 +75,7 @@ class Case:
         prior = self.knowledge.prior(state, m)
         self.information = np.zeros((self.a.shape[1],) * 2)
         self.vector = np.zeros(self.a.shape[1])
-        self.information[-8:, -8:], self.vector[-8:] = prior.camera, prior.camera_vector
+        self.information[-9:, -9:], self.vector[-9:] = prior.camera, prior.camera_vector
         for k in range(m.n_points):
             block = slice(3 * k, 3 * k + 3)
             self.information[block, block] = prior.points[k]
@@ -95,9 +95,9 @@ def case(request):
 def test_derivatives_by_complex_step():
     case = Case(LEVELS)
     m, state = case.measurements, case.state
-    bodies = m.body_pose + state.correction
+    bodies = state.body_poses(m)
     out = empty_linearised(len(m.u_px))
-    assert linearise(m.u_px, bodies, m.point, state.points_m, state.optics(CAMERA), out) == 0
+    assert linearise(m.u_px, bodies, m.rate, m.point, state.points_m, state.optics(CAMERA), out) == 0
     expected = dense.linearised(CAMERA, state.position_m, state.rotation, m, state.points_m, bodies)
     for found, value in zip(out, expected, strict=True):
         # a product of some ten factors, each rounded once
@@ -112,8 +112,8 @@ def test_chi_squared_and_determinants(case):
 
 
 def test_covariance_of_pose_and_intrinsics(case):
-    scale = np.sqrt(np.diag(np.linalg.inv(case.normal))[-8:])
-    for size in (6, 8):
+    scale = np.sqrt(np.diag(np.linalg.inv(case.normal))[-9:])
+    for size in (6, 9):
         expected = np.linalg.inv(case.normal)[-size:, -size:]
         found = trailing_inverse(case.done.upper, size)
         assert np.allclose((found - expected) / np.outer(scale[-size:], scale[-size:]), 0, atol=1e-7)
@@ -196,8 +196,9 @@ def test_least_squares_over_all_unknowns_finds_the_same_optimum():
     sigmas = [CAMERA.sigmas.principal_point_px, CAMERA.sigmas.focal_length_m]
 
     def residuals(x):
-        camera, points, latent = x[:8] * scale, x[8 : 8 + 3 * m.n_points].reshape(-1, 3), x[8 + 3 * m.n_points :]
-        bodies = m.body_pose + (root @ latent).reshape(-1, 6)
+        camera, points, latent = x[:9] * scale, x[9 : 9 + 3 * m.n_points].reshape(-1, 3), x[9 + 3 * m.n_points :]
+        offset_s = base.clock_offset_s + camera[8]
+        bodies = m.body_pose + offset_s * m.rate + (root @ latent).reshape(-1, 6)
         intrinsics = np.array(
             [
                 base.principal_point_px + camera[6] - CAMERA.principal_point_px,
@@ -212,11 +213,11 @@ def test_least_squares_over_all_unknowns_finds_the_same_optimum():
         ]
         turn = rotation_vector_from_matrix(matrix_from_rotation_vector(hand.pose[3:]) @ rotation.T)
         off = whitening @ np.concatenate([hand.pose[:3] - lever, turn])
-        return np.concatenate([*rows, latent, off, intrinsics / sigmas])
+        return np.concatenate([*rows, latent, off, intrinsics / sigmas, [offset_s / 0.02]])
 
-    scale = np.sqrt(np.diag(trailing_inverse(found.done.upper, 8)))[[2, 3, 4, 5, 6, 7, 0, 1]]
+    scale = np.sqrt(np.diag(trailing_inverse(found.done.upper, 9)))[[3, 4, 5, 6, 7, 8, 0, 1, 2]]
     random = np.random.default_rng(1)
-    start = np.concatenate([0.5 * random.normal(size=8), base.points_m.ravel(), np.zeros(root.shape[1])])
+    start = np.concatenate([0.5 * random.normal(size=9), base.points_m.ravel(), np.zeros(root.shape[1])])
     best = least_squares(residuals, start, method="trf", x_scale="jac", xtol=1e-13, ftol=1e-14, gtol=1e-12)
     assert 2 * best.cost == pytest.approx(found.done.chi_squared, rel=1e-6)
-    assert np.allclose(best.x[:8], 0, atol=2e-4)  # sigmas: the square root of what chi squared is flat by
+    assert np.allclose(best.x[:9], 0, atol=2e-4)  # sigmas: the square root of what chi squared is flat by

@@ -40,8 +40,13 @@ def reported_covariance(scale=1.0):
     return correlation * np.outer(SIGMA, SIGMA) * scale**2
 
 
-def make_survey(n_views, n_points, errors=None, seed=0, gap_s=20.0, camera=CAMERA):
-    """Views from all round the pattern; each point crosses the line of the true body exactly, then errors are added."""
+def make_survey(
+    n_views, n_points, errors=None, seed=0, gap_s=20.0, camera=CAMERA, speeds_m_s=(SPEED_M_S,), clock_offset_s=0.0
+):
+    """Views from all round the pattern; each point crosses the line of the true body exactly, then errors are added.
+
+    Views take the speeds in turn; the clock of the scan is `clock_offset_s` behind that of the navigation.
+    """
     errors = errors or Errors()
     random = np.random.default_rng(seed)
     points = random.uniform([-0.6, -0.6, 0.2], [0.6, 0.6, 0.6], (n_points, 3))
@@ -54,12 +59,12 @@ def make_survey(n_views, n_points, errors=None, seed=0, gap_s=20.0, camera=CAMER
         r_wb = matrix_from_euler(attitude)
         aim = random.normal([0, 0, 0.4], 0.1)
         centre = aim - r_wb @ r_bc[:, 2] * random.uniform(1.6, 2.6) - r_wb @ POSE[:3]
-        forward = r_wb @ r_bc[:, 1]
+        forward, speed = r_wb @ r_bc[:, 1], speeds_m_s[view % len(speeds_m_s)]
         for point in range(n_points):
             in_camera = r_bc.T @ (r_wb.T @ (points[point] - centre) - POSE[:3])
             lateness = LINE_S * errors.lateness * random.normal()
-            time[view, point] = gap_s * view + in_camera[1] / SPEED_M_S + lateness
-            body = centre + forward * (in_camera[1] + SPEED_M_S * lateness)
+            time[view, point] = gap_s * view + in_camera[1] / speed + lateness - clock_offset_s
+            body = centre + forward * (in_camera[1] + speed * (lateness - clock_offset_s))
             x = in_camera[0] / in_camera[2]
             radial = x * (1 + camera.k1 * x**2 + camera.k2 * x**4)
             noise = errors.pixel * camera.sigmas.u_px * random.normal()
