@@ -19,12 +19,13 @@ with stage(snakemake) as log:
         platform.intrinsics(),
         platform.simulation,
         platform.start_pose(),
-        None if regime.from_prior else regime,
+        regime,
         study.seed,
-        study.n_draws,
+        regime.with_faults,
+        regime.hand_measured_prior,
     )
     cell.compile()
-    ranges = batch_ranges(study.n_surveys, snakemake.params.batch_size)
+    ranges = batch_ranges(regime.n_surveys or study.n_surveys, snakemake.params.batch_size)
     told = {key: value for key, value in snakemake.params.items() if key != "batch_size"}
     work = Path(snakemake.params.work) / inputs_digest(told, [])
     table = run_batches(lambda name: cell.rows(ranges[name]), list(ranges), work, COVERAGE_SURVEYS, snakemake.threads)

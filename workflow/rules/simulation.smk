@@ -57,8 +57,6 @@ wildcard_constraints:
 
 
 rule coverage_cell:
-    input:
-        compiled="results/compiled/{noise_model}.txt",
     output:
         "results/coverage/cells/{platform}/{regime}/{noise_model}.parquet",
     log:
@@ -77,7 +75,7 @@ rule coverage_cell:
             mode="json", exclude={"noise_models"}
         ),
         study=STUDY.coverage.model_dump(
-            mode="json", include={"n_surveys", "n_draws", "seed"}
+            mode="json", include={"n_surveys", "seed"}
         ),
         batch_size=STUDY.coverage.batch_size,
         work="results/coverage/work/{platform}-{regime}-{noise_model}",

@@ -1,30 +1,31 @@
 """What config.yaml says of the coverage study."""
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
-from linepose.estimation.noise_models import MEANINGS, NOISE_MODELS, NoiseModelName
 from linepose.settings import Settings
 from linepose.simulation.noise_levels import NoiseLevels
+
+RegimeName = Annotated[str, Field(pattern="^[A-Za-z0-9-]+$")]
 
 
 class RegimeSection(NoiseLevels):
     """The true noise of surveys, in units of what is reported, and the noise models that estimate from them."""
 
-    from_prior: bool = Field(
-        False, description="Draw shared, white and pixel level for each survey from the model's priors instead."
+    n_surveys: PositiveInt | None = Field(None, description="Surveys of each platform; as the study has if null.")
+    with_faults: bool = Field(False, description="Leave the observations with the platform's planted faults in.")
+    hand_measured_prior: bool = Field(
+        False, description="Draw the hand measurement from its prior about the truth for each survey, and count it."
     )
-    noise_models: list[NoiseModelName] = Field(
-        [one.name for one in NOISE_MODELS.values() if one.quick],
-        min_length=1,
-        description=f"The noise models that estimate. {MEANINGS}",
+    noise_models: list[Literal["adjustment", "published"]] = Field(
+        ["adjustment"], min_length=1, description="The noise models that estimate."
     )
 
     @model_validator(mode="after")
-    def _one_of_two(self) -> Self:
-        if self.from_prior and (self.shared_level or self.white_level or self.correlated_level or self.pixel_level):
-            raise ValueError("levels, or from_prior, not both")
+    def _prior_of_the_adjustment(self) -> Self:
+        if self.hand_measured_prior and self.noise_models != ["adjustment"]:
+            raise ValueError("hand_measured_prior counts in the adjustment alone: noise_models: [adjustment]")
         return self
 
 
@@ -32,10 +33,19 @@ class CoverageSection(Settings):
     """Simulated surveys with a known truth: how often the stated regions hold it (snakemake coverage)."""
 
     platforms: list[str] = Field([], description="Simulated platforms among the study's; all of these if empty.")
-    n_surveys: PositiveInt = Field(300, description="Surveys of each platform and regime.")
-    n_draws: int = Field(1000, ge=100, description="Draws from each posterior.")
+    n_surveys: PositiveInt = Field(200, description="Surveys of each platform and regime.")
     seed: NonNegativeInt = Field(7, description="Seed of the study's surveys.")
     batch_size: PositiveInt = Field(10, description="Surveys between two savings; no result depends on it.")
-    regimes: dict[Annotated[str, Field(pattern="^[A-Za-z0-9-]+$")], RegimeSection] = Field(
-        default_factory=dict, description="Regimes of true noise, by name."
+    regimes: dict[RegimeName, RegimeSection] = Field(default_factory=dict, description="Regimes of true noise, by name.")
+    pools: dict[RegimeName, list[RegimeName]] = Field(
+        default_factory=dict, description="Regimes that are also judged together, over all platforms, by a name."
     )
+
+    @model_validator(mode="after")
+    def _pools_of_regimes(self) -> Self:
+        for pool, regimes in self.pools.items():
+            unknown = [name for name in regimes if name not in self.regimes]
+            if unknown or not regimes or pool in self.regimes:
+                found = ", ".join(unknown) if unknown else "no regime" if not regimes else "the name of a regime"
+                raise ValueError(f"pools.{pool}: found {found}, expected names of coverage.regimes; correct it")
+        return self

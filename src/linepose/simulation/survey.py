@@ -15,7 +15,9 @@ from linepose.simulation.trajectory import body_poses, time_us
 from linepose.survey.observations import Survey
 
 
-def simulate_survey(camera: Camera, settings: SimulationSettings, seed: int) -> tuple[Survey, Truth]:
+def simulate_survey(
+    camera: Camera, settings: SimulationSettings, seed: int | np.random.Generator
+) -> tuple[Survey, Truth]:
     """What extraction and association would make of the survey, and the truth behind it.
 
     The exact pixel and time of each point get the extraction's noise; the body pose is the true one at the reported
