@@ -22,7 +22,7 @@ with stage(snakemake) as log:
 
     cells = [read_table(path, COVERAGE_SURVEYS) for path in snakemake.input.cells]
     surveys = pd.concat([cell.astype(cells[0].dtypes) for cell in cells], ignore_index=True)
-    curve, summary = coverage_curve(surveys, stated_probabilities()), coverage_summary(surveys)
+    curve, summary = coverage_curve(surveys, stated_probabilities()), coverage_summary(surveys, snakemake.params.pools)
     write_table(surveys, snakemake.output.surveys, COVERAGE_SURVEYS)
     write_table(curve, snakemake.output.coverage, COVERAGE)
     write_table(summary, snakemake.output.summary, COVERAGE_SUMMARY)
@@ -31,8 +31,7 @@ with stage(snakemake) as log:
         path.write_text(coverage_table(summary), encoding="utf-8")
     folder = Path(snakemake.output.figures)
     save(figures.coverage(curve), folder / "coverage")
+    save(figures.ratios(summary), folder / "ratios")
     save(figures.errors(summary), folder / "errors")
-    for model in dict.fromkeys(surveys["noise_model"]):
-        save(figures.ranks(surveys, model), folder / f"ranks_{model}")
     write_file_list(folder, Path(snakemake.output.files))
     log.info("%d surveys in %d cells", len(surveys), len(summary))

@@ -101,6 +101,7 @@ rule coverage:
     conda:
         "../../environment.yml"
     params:
+        pools=STUDY.coverage.pools,
         code=script_digest("coverage_summary"),
     script:
         "../../scripts/coverage_summary.py"  # numba imports whatever is called coverage

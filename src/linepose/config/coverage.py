@@ -36,7 +36,9 @@ class CoverageSection(Settings):
     n_surveys: PositiveInt = Field(200, description="Surveys of each platform and regime.")
     seed: NonNegativeInt = Field(7, description="Seed of the study's surveys.")
     batch_size: PositiveInt = Field(10, description="Surveys between two savings; no result depends on it.")
-    regimes: dict[RegimeName, RegimeSection] = Field(default_factory=dict, description="Regimes of true noise, by name.")
+    regimes: dict[RegimeName, RegimeSection] = Field(
+        default_factory=dict, description="Regimes of true noise, by name."
+    )
     pools: dict[RegimeName, list[RegimeName]] = Field(
         default_factory=dict, description="Regimes that are also judged together, over all platforms, by a name."
     )

@@ -120,7 +120,7 @@ def failed_estimate(reason: str) -> dict[str, Any]:
 
 
 def drawn_hand_measurement(truth: Floats, random: np.random.Generator) -> Floats:
-    """A pose (6,) measured by hand: drawn about the true one (6,) with the sigmas that the adjustment counts it with."""
+    """A pose (6,) measured by hand: drawn about the true one (6,) with the sigmas that the adjustment has for it."""
     error = np.linalg.cholesky(default_hand_covariance()) @ random.standard_normal(N_PARAMETERS)
     turned = matrix_from_rotation_vector(error[3:]) @ matrix_from_rotation_vector(truth[3:])
     return np.concatenate([truth[:3] + error[:3], rotation_vector_from_matrix(turned)])

@@ -19,6 +19,7 @@ from linepose.estimation.optimise import laplace_covariance, minimise
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import difference_covariance, pose_difference
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
+from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.survey.observations import Survey
 
@@ -76,9 +77,13 @@ def judged(found: Adjustment, truth: Floats) -> Judged:
 
 
 def judged_published(survey: Survey, camera: Camera, start: Start, truth: Floats) -> Judged:
-    """The published model's optimum and curvature beside the true pose (6,); raises LineposeError without a region."""
-    likelihood = PublishedLikelihood(survey, camera)
-    found = minimise(likelihood, start.pose, start.pose)
+    """The published model's optimum beside the true pose (6,); raises LineposeError where it has no region."""
+    return judged_optimum(PublishedLikelihood(survey, camera), start.pose, truth)
+
+
+def judged_optimum(likelihood: Likelihood, start: Floats, truth: Floats) -> Judged:
+    """Optimum and curvature of a likelihood of a pose, from a start (6,), beside the truth (6,)."""
+    found = minimise(likelihood, start, start)
     covariance = difference_covariance(found.parameters, laplace_covariance(likelihood, found.parameters))
     error = pose_difference(found.parameters, truth)
     return Judged(

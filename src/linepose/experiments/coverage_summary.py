@@ -1,22 +1,20 @@
-"""What a coverage study says: coverage with binomial intervals, root-mean-square errors, uniformity of ranks."""
+"""What a coverage study says: coverage with binomial intervals, errors in metres and in sigmas, failures."""
 
-from typing import Final
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
 
 import numpy as np
 import pandas as pd
 import pyarrow as pa
-from scipy.stats import binomtest, chisquare
+from scipy.stats import binomtest, chi2, kstest
 
-from linepose.estimation.importance import TRUSTED_SHAPE
-from linepose.experiments.coverage import CELL, N_RANKED, RANK_COLUMNS, TRUE_COLUMNS
-from linepose.geometry.pose import POSE_COLUMNS
+from linepose.experiments.coverage import AXES, CELL, ERROR_COLUMNS, ERROR_SIGMA_COLUMNS
 from linepose.tables import floats, optional_floats, texts, whole_numbers
 
 NOMINAL: Final = (0.68, 0.95)
-RMSE_COLUMNS: Final = tuple(f"rmse_{name}" for name in POSE_COLUMNS)
-BIAS_COLUMNS: Final = tuple(f"bias_{name}" for name in POSE_COLUMNS)
-RANK_P_COLUMNS: Final = tuple(f"rank_p_value_{name}" for name in POSE_COLUMNS)
-N_BINS: Final = 20
+ALL_PLATFORMS: Final = "all"
+RMSE_COLUMNS: Final = tuple(f"rmse_{axis}" for axis in AXES)
+BIAS_COLUMNS: Final = tuple(f"bias_{axis}" for axis in AXES)
 
 COVERAGE: Final = pa.schema(
     [
@@ -31,9 +29,9 @@ COVERAGE_SUMMARY: Final = pa.schema(
         *texts(*CELL),
         *whole_numbers("n_surveys", "n_failed"),
         *floats(*(f"coverage_{p}{end}" for p in (68, 95) for end in ("", "_low", "_high"))),
-        *floats("laplace_coverage_68", "laplace_coverage_95"),
-        *optional_floats(*RMSE_COLUMNS, *BIAS_COLUMNS, *RANK_P_COLUMNS),
-        *optional_floats("median_effective_sample_size", "untrusted_share"),
+        *floats("uniform_p_value"),
+        *optional_floats("ratio", "rmse_position_m", "rmse_turn_rad", *RMSE_COLUMNS, *BIAS_COLUMNS),
+        *optional_floats("heavy_tails_share", "smallest_eigenvalue"),
     ]
 )
 
@@ -51,55 +49,73 @@ def stated_probabilities() -> np.ndarray:
     return np.unique(np.concatenate([np.arange(1, 20) / 20, NOMINAL]))
 
 
-def coverage_curve(surveys: pd.DataFrame, nominal: np.ndarray, column: str = "credibility") -> pd.DataFrame:
+def coverage_curve(surveys: pd.DataFrame, nominal: np.ndarray) -> pd.DataFrame:
     """One row a cell and nominal probability: how often that region held the truth, with a 95 % interval."""
     rows = []
     for cell, part in surveys.groupby(CELL, sort=False):
         for probability in nominal:
-            held = int((part[column] < probability).sum())
-            low, high = clopper_pearson(held, len(part))
+            held, share, low, high = _held(part, probability)
             rows.append(
                 dict(zip(CELL, cell, strict=True))
                 | {"nominal": float(probability), "n_surveys": len(part), "n_covered": held}
-                | {"coverage": held / len(part), "coverage_low": low, "coverage_high": high}
+                | {"coverage": share, "coverage_low": low, "coverage_high": high}
             )
     return pd.DataFrame(rows)
 
 
-def coverage_summary(surveys: pd.DataFrame) -> pd.DataFrame:
-    """One row a cell: coverage at 68 and 95 %, root-mean-square errors, biases in sigmas, uniformity of the ranks.
+def coverage_summary(surveys: pd.DataFrame, pools: Mapping[str, Sequence[str]]) -> pd.DataFrame:
+    """One row a cell, then one a pool of regimes and noise model, over all platforms and of the pool's name.
 
-    Errors and ranks are of the estimates that did not fail; coverage counts a failed one as a miss.
+    Coverage and its uniformity count a failed estimate as a miss; errors are of the estimates that did not fail.
+    `ratio` is the root mean square of the six errors in sigmas: 1 where sigmas are right. Errors in metres and radians
+    of a pool are none, as platforms differ.
     """
-    rows = []
-    for cell, part in surveys.groupby(CELL, sort=False):
-        row = dict(zip(CELL, cell, strict=True)) | {"n_surveys": len(part), "n_failed": int(part["failed"].sum())}
-        for name, column in (("", "credibility"), ("laplace_", "laplace_credibility")):
-            for probability in NOMINAL:
-                held = int((part[column] < probability).sum())
-                key = f"{name}coverage_{round(100 * probability)}"
-                row |= {key: held / len(part)}
-                if not name:
-                    row[f"{key}_low"], row[f"{key}_high"] = clopper_pearson(held, len(part))
-        found = part[~part["failed"]]
-        error = found[list(POSE_COLUMNS)].to_numpy() - found[list(TRUE_COLUMNS)].to_numpy()
-        sigma = found[[f"sigma_{name}" for name in POSE_COLUMNS]].to_numpy()
-        none = np.full(len(POSE_COLUMNS), np.nan)
-        row |= dict(zip(RMSE_COLUMNS, np.sqrt(np.mean(error**2, axis=0)) if len(found) else none, strict=True))
-        row |= dict(zip(BIAS_COLUMNS, np.mean(error / sigma, axis=0) if len(found) else none, strict=True))
-        row |= {p: rank_p_value(found[rank]) for p, rank in zip(RANK_P_COLUMNS, RANK_COLUMNS, strict=True)}
-        row["median_effective_sample_size"] = float(found["effective_sample_size"].median())
-        row["untrusted_share"] = float((found["pareto_shape"] > TRUSTED_SHAPE).mean()) if len(found) else np.nan
-        rows.append(row)
+    rows = [dict(zip(CELL, cell, strict=True)) | _judged(part) for cell, part in surveys.groupby(CELL, sort=False)]
+    for pool, model, part in _pooled(surveys, pools):
+        row = {"platform": ALL_PLATFORMS, "regime": pool, "noise_model": model} | _judged(part)
+        rows.append(row | dict.fromkeys(("rmse_position_m", "rmse_turn_rad", *RMSE_COLUMNS), np.nan))
     return pd.DataFrame(rows)
 
 
-def rank_histogram(ranks: pd.Series) -> np.ndarray:
-    """How many ranks, 0 to `N_RANKED`, fall into each of `N_BINS` bins of equal size."""
-    return np.bincount(ranks.to_numpy(dtype=int) * N_BINS // (N_RANKED + 1), minlength=N_BINS)
+def ratio_interval(n_surveys: int, confidence: float = 0.95) -> tuple[float, float]:
+    """Where the ratio lies with this probability if sigmas are right and the six errors independent."""
+    freedom = len(AXES) * n_surveys
+    low, high = np.sqrt(chi2.ppf([(1 - confidence) / 2, (1 + confidence) / 2], freedom) / freedom)
+    return float(low), float(high)
 
 
-def rank_p_value(ranks: pd.Series) -> float:
-    """Chance of a histogram at least as uneven where ranks are uniform (chi-square); NaN for fewer than five a bin."""
-    counts = rank_histogram(ranks)
-    return float(chisquare(counts).pvalue) if counts.sum() >= 5 * N_BINS else float("nan")
+def _pooled(surveys: pd.DataFrame, pools: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str, pd.DataFrame]]:
+    """Name, noise model and surveys of each pool of which a noise model has every regime."""
+    for pool, regimes in pools.items():
+        for model, part in surveys[surveys["regime"].isin(regimes)].groupby("noise_model", sort=False):
+            if set(part["regime"]) == set(regimes):
+                yield pool, str(model), part
+
+
+def _judged(part: pd.DataFrame) -> dict[str, Any]:
+    row: dict[str, Any] = {"n_surveys": len(part), "n_failed": int(part["failed"].sum())}
+    for probability in NOMINAL:
+        key = f"coverage_{round(100 * probability)}"
+        _, row[key], row[f"{key}_low"], row[f"{key}_high"] = _held(part, probability)
+    row["uniform_p_value"] = float(kstest(part["credibility"], "uniform").pvalue)
+    found = part[~part["failed"]]
+    if found.empty:
+        return row | dict.fromkeys(COVERAGE_SUMMARY.names[len(CELL) + len(row) :], np.nan)
+    error = found[list(ERROR_COLUMNS)].to_numpy()
+    scaled = error / found[list(ERROR_SIGMA_COLUMNS)].to_numpy()
+    mean_squares = np.mean(error**2, axis=0)
+    return row | {
+        "ratio": float(np.sqrt(np.mean(scaled**2))),
+        "rmse_position_m": float(np.sqrt(mean_squares[:3].sum())),
+        "rmse_turn_rad": float(np.sqrt(mean_squares[3:].sum())),
+        **dict(zip(RMSE_COLUMNS, np.sqrt(mean_squares), strict=True)),
+        **dict(zip(BIAS_COLUMNS, np.mean(scaled, axis=0), strict=True)),
+        "heavy_tails_share": float(found["heavy_tails"].mean()),
+        "smallest_eigenvalue": float(found["least_eigenvalue"].min()),
+    }
+
+
+def _held(part: pd.DataFrame, probability: float) -> tuple[int, float, float, float]:
+    """How many surveys a region of this probability holds, their share, and its 95 % interval."""
+    held = int((part["credibility"] < probability).sum())
+    return held, held / len(part), *clopper_pearson(held, len(part))

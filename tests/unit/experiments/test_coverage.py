@@ -1,78 +1,135 @@
-"""The coverage study's judgement, on a linear-Gaussian estimate of which everything is known."""
+"""The coverage study's surveys and rows, and a small cell of it as a regression of what the adjustment states."""
+
+from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 import pytest
-from scipy.stats import binom
+from scipy.stats import binom, chi2
 
+from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.config.platform import load_platform
-from linepose.experiments.coverage import RANK_COLUMNS, Cell, estimate_row, levels_from_prior
-from linepose.experiments.coverage_summary import rank_p_value
-from linepose.likelihood.shared import SharedPriors
+from linepose.errors import EstimationError, InputError
+from linepose.experiments import coverage
+from linepose.experiments.coverage import COVERAGE_SURVEYS, NOT_CONVERGED, Cell, drawn_hand_measurement
+from linepose.experiments.coverage_estimates import Judged, judged
+from linepose.geometry.distance import pose_difference
+from linepose.geometry.pose import POSE_COLUMNS
 from linepose.simulation.noise_levels import NoiseLevels
+from linepose.tables import read_table, write_table
 
-SIGMA = np.array([0.03, 0.05, 0.06, 0.016, 0.018, 0.009])
-N = 400
+N_SURVEYS = 24
+MIXED = NoiseLevels(shared_level=0.7071, white_level=0.7071)
 
 
-def estimates(function_likelihood, claimed):
-    """Rows of N conjugate estimates: truth at zero, data of sigma SIGMA, a likelihood that claims so many times it."""
-    random, rows = np.random.default_rng(11), []
-    for _ in range(N):
-        data = SIGMA * random.standard_normal(6)
-        likelihood = function_likelihood(
-            lambda p, data=data: 0.5 * np.sum(((p - data) / (claimed * SIGMA)) ** 2, axis=1)
-        )
-        rows.append(estimate_row(likelihood, np.zeros(6), np.zeros(6), random, 300))
-    return pd.DataFrame(rows)
+@pytest.fixture(scope="module")
+def platform(platforms_folder):
+    return load_platform(platforms_folder, "ladybird-sim")
+
+
+def cell(platform, noise_model="adjustment", regime="mixed", levels=MIXED, **options):
+    camera, simulation = platform.intrinsics(), platform.simulation
+    return Cell("p", regime, noise_model, camera, simulation, platform.start_pose(), levels, 7, **options)
+
+
+def judge(**values):
+    """An estimator that gives these values in place of an estimate."""
+    given = {"pose": np.arange(6.0), "error": np.ones(6), "sigma": np.full(6, 2.0), "credibility": 0.4}
+    return lambda *_: Judged(**(given | values))
+
+
+def halved(found):
+    """The same estimate with samples half as far from their mean: sigmas half as large."""
+    samples = found.samples.copy()
+    samples[list(POSE_COLUMNS)] = 0.5 * (samples[list(POSE_COLUMNS)] + samples[list(POSE_COLUMNS)].mean())
+    return replace(found, samples=samples)
+
+
+def is_true(results):
+    """Whether coverage of 68 % and errors in sigmas are such as 99.8 % of right ones are."""
+    n = len(results)
+    held = sum(one.credibility < 0.68 for one in results)
+    low, high = binom.interval(0.998, n, 0.68)
+    # as if the six errors of a survey were one: the widest that any correlation between them makes it
+    least, most = np.sqrt(chi2.ppf([0.001, 0.999], n) / n)
+    ratio = np.sqrt(np.mean([(one.error / one.sigma) ** 2 for one in results]))
+    return low <= held <= high and least <= ratio <= most
 
 
 @pytest.mark.statistical
-def test_honest_sigmas_cover_as_stated_and_ranks_are_uniform(function_likelihood):
-    honest = estimates(function_likelihood, 1.0)
-    assert not honest["failed"].any()
-    for nominal in (0.5, 0.68, 0.95):
-        low, high = binom.interval(0.999, N, nominal)
-        for column in ("credibility", "laplace_credibility"):
-            # 300 draws are worth about 200: a credibility is off by 0.035, which moves the share by 0.002 at most
-            assert low - 0.002 * N <= (honest[column] < nominal).sum() <= high + 0.002 * N
-    for column in RANK_COLUMNS:
-        assert rank_p_value(honest[column]) > 1e-3
+def test_stated_regions_hold_the_truth_and_sigmas_of_half_the_size_are_found_out(platform):
+    small = cell(platform)
+    settings = AdjustmentSettings(hand_measured_prior=False, line_period_s=1 / 133.0, n_draws=80)
+    stated, half = [], []
+    for index in range(N_SURVEYS):
+        survey, truth, hand = small.survey(index)
+        found = adjust(survey, small.camera, hand, settings=settings)
+        assert found.diagnostics.converged
+        stated.append(judged(found, truth))
+        half.append(judged(halved(found), truth))
+    assert is_true(stated)
+    assert not is_true(half)
 
 
-@pytest.mark.statistical
-def test_sigmas_of_half_the_size_are_found_out(function_likelihood):
-    rows = estimates(function_likelihood, 0.5)
-    # chi-square with 6 degrees of freedom: four times the distance squared is below the 68 % point in 6 % of cases
-    assert (rows["credibility"] < 0.68).mean() < 0.15
-    assert rank_p_value(rows[RANK_COLUMNS[0]]) < 1e-6
+def test_rows_depend_on_the_survey_alone_and_fit_the_schema(platform, tmp_path):
+    small = cell(platform)
+    both, second = small.rows([0, 1]), small.rows([1])
+    np.testing.assert_array_equal(both.iloc[1].drop("reason"), second.iloc[0].drop("reason"))
+    write_table(both, tmp_path / "rows.parquet", COVERAGE_SURVEYS)
+    assert read_table(tmp_path / "rows.parquet", COVERAGE_SURVEYS)["survey"].tolist() == [0, 1]
 
 
-def test_open_direction_is_a_failed_estimate_that_holds_nothing(function_likelihood):
-    likelihood = function_likelihood(lambda p: 0.5 * np.sum((p[:, 1:] / SIGMA[1:]) ** 2, axis=1))
-    row = estimate_row(likelihood, np.zeros(6), np.zeros(6), np.random.default_rng(1), 100)
-    assert row["failed"]
-    assert (row["credibility"], row["laplace_credibility"]) == (1.0, 1.0)
-    assert np.isnan(row["rank_r_x_m"])
+def test_estimates_that_fail_hold_nothing_and_say_why(platform, monkeypatch):
+    def raises(*_):
+        raise EstimationError("no start leads anywhere")
+
+    small = cell(platform)
+    monkeypatch.setitem(coverage.JUDGES, "adjustment", raises)
+    row = small.row(0)
+    assert (row["failed"], row["reason"], row["credibility"]) == (True, "no start leads anywhere", 1.0)
+    assert np.isnan(row["error_r_x_m"])
+    monkeypatch.setitem(coverage.JUDGES, "adjustment", judge(converged=False))
+    row = small.row(0)
+    assert (row["failed"], row["reason"], row["credibility"]) == (True, NOT_CONVERGED, 1.0)
+    monkeypatch.setitem(coverage.JUDGES, "adjustment", judge(converged=True))
+    row = small.row(0)
+    assert (row["failed"], row["reason"], row["credibility"], row["sigma_r_x_m"]) == (False, "", 0.4, 2.0)
 
 
-def test_same_number_is_the_same_survey_for_every_noise_model(platforms_folder):
-    platform = load_platform(platforms_folder, "ladybird-sim")
-
-    def cell(model, regime="white"):
-        simulation, camera = platform.simulation, platform.intrinsics()
-        return Cell("p", regime, model, camera, simulation, platform.start_pose(), NoiseLevels(white_level=1.0), 7)
-
-    first, second = (cell(model).survey(4)[0] for model in ("published", "balanced"))
+def test_same_number_is_the_same_survey_for_every_noise_model(platform):
+    first, second = (cell(platform, model).survey(4)[0] for model in ("published", "adjustment"))
     np.testing.assert_array_equal(first.position_m, second.position_m)
-    assert not np.array_equal(first.position_m, cell("published").survey(5)[0].position_m)
-    assert not np.array_equal(first.position_m, cell("published", "shared").survey(4)[0].position_m)
+    assert not np.array_equal(first.position_m, cell(platform).survey(5)[0].position_m)
+    assert not np.array_equal(first.position_m, cell(platform, regime="other").survey(4)[0].position_m)
+
+
+def test_hand_measurement_is_drawn_anew_where_it_counts(platform):
+    np.testing.assert_array_equal(cell(platform).survey(4)[2], platform.start_pose())
+    drawn = cell(platform, hand_measured_prior=True)
+    assert not np.array_equal(drawn.survey(4)[2], drawn.survey(5)[2])
+    np.testing.assert_array_equal(drawn.survey(4)[0].position_m, cell(platform).survey(4)[0].position_m)
+
+
+def test_hand_measurement_counts_where_it_is_said_to(platform, monkeypatch):
+    starts = []
+    monkeypatch.setitem(
+        coverage.JUDGES, "adjustment", lambda *given: starts.append(given[2]) or judge(converged=True)()
+    )
+    for counts in (False, True):
+        cell(platform, hand_measured_prior=counts).row(0)
+    assert [start.is_prior for start in starts] == [False, True]
+    assert starts[0].line_period_s == pytest.approx(1 / 133.0)
 
 
 @pytest.mark.statistical
-def test_levels_are_the_priors():
-    random, priors = np.random.default_rng(1), SharedPriors()
-    levels = [levels_from_prior(random, priors) for _ in range(500)]
-    logs = np.log([[one.shared_level, one.white_level, one.pixel_level] for one in levels])
-    np.testing.assert_allclose(logs.mean(axis=0), np.log(0.5), atol=4 * 1.5 / np.sqrt(500))
-    np.testing.assert_allclose(logs.std(axis=0), 1.5, atol=4 * 1.5 / np.sqrt(1000))
+def test_hand_measurements_are_off_by_their_sigmas_on_every_body_axis():
+    random, truth = np.random.default_rng(3), np.array([0.2, 0.0, -0.5, 1.4, 1.4, -1.1])
+    n = 400
+    off = np.array([pose_difference(drawn_hand_measurement(truth, random), truth) for _ in range(n)])
+    low, high = np.sqrt(chi2.ppf([1e-4, 1 - 1e-4], n) / n)
+    scaled = np.sqrt(np.mean(off**2, axis=0)) / np.array([0.1] * 3 + [np.deg2rad(2.0)] * 3)
+    assert np.all((scaled > low) & (scaled < high))
+
+
+def test_unknown_noise_model_is_told(platform):
+    with pytest.raises(InputError, match=r"noise model: found 'balancd', expected one of adjustment, published"):
+        cell(platform, "balancd")

@@ -4,29 +4,28 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from linepose.experiments.coverage import N_RANKED, RANK_COLUMNS, TRUE_COLUMNS
+from linepose.experiments.coverage import ERROR_COLUMNS, ERROR_SIGMA_COLUMNS
 from linepose.experiments.coverage_summary import coverage_curve, coverage_summary, stated_probabilities
 from linepose.experiments.coverage_table import coverage_table
-from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.output.figures import coverage as figures
+
+POOLS = {"both": ["white", "shared"]}
 
 
 @pytest.fixture
 def surveys() -> pd.DataFrame:
     random, parts = np.random.default_rng(1), []
     for regime in ("white", "shared"):
-        for model in ("published", "balanced"):
+        for model in ("published", "adjustment"):
             n = 40
             parts.append(
                 pd.DataFrame(
                     {"platform": "p-sim", "regime": regime, "noise_model": model, "survey": np.arange(n)}
-                    | {"failed": (model == "published") & (regime == "white"), "pareto_shape": 0.2}
-                    | {"effective_sample_size": 300.0}
-                    | {key: random.uniform(size=n) for key in ("credibility", "laplace_credibility")}
-                    | dict.fromkeys(TRUE_COLUMNS, 0.0)
-                    | {key: random.normal(size=n) for key in POSE_COLUMNS}
-                    | dict.fromkeys(SIGMA_COLUMNS, 1.0)
-                    | {key: random.integers(0, N_RANKED + 1, n) for key in RANK_COLUMNS}
+                    | {"failed": (model == "published") & (regime == "white"), "heavy_tails": False}
+                    | {"least_eigenvalue": 0.9 if model == "adjustment" else np.nan}
+                    | {"credibility": random.uniform(size=n)}
+                    | {key: random.normal(size=n) for key in ERROR_COLUMNS}
+                    | dict.fromkeys(ERROR_SIGMA_COLUMNS, 1.0)
                 )
             )
     return pd.concat(parts, ignore_index=True)
@@ -38,22 +37,31 @@ def test_a_panel_for_each_platform_and_regime(surveys):
     assert all(len(axes.lines) == 3 for axes in figure.axes)  # the diagonal and two models
 
 
-def test_ranks_have_a_row_a_cell_and_a_column_a_parameter(surveys):
-    assert len(figures.ranks(surveys, "balanced").axes) == 2 * 6
-    assert len(figures.ranks(surveys, "published").axes) == 1 * 6  # the cell of which all failed has none
-
-
-def test_cell_of_failures_has_no_bar(surveys):
-    figure = figures.errors(coverage_summary(surveys))
+def test_cell_of_failures_has_no_bar_and_no_ratio(surveys):
+    summary = coverage_summary(surveys, POOLS)
+    figure = figures.errors(summary)
     assert sum(len(container) for container in figure.axes[0].containers) == 3
+    (panel,) = figures.ratios(summary).axes
+    points = {(line.get_xdata()[0], line.get_ydata()[0]) for line in panel.lines if line.get_marker() == "o"}
+    assert {row for _, row in points} == {0, 1}
+    assert len(points) == 3
+    assert {value for value, _ in points} == set(summary[summary["platform"] == "p-sim"]["ratio"].dropna())
 
 
-def test_table_has_a_row_a_cell_with_intervals(surveys):
-    lines = coverage_table(coverage_summary(surveys)).splitlines()
-    assert len(lines) == 2 + 4
+def test_pools_have_no_place_among_the_platforms(surveys):
+    summary = coverage_summary(surveys, POOLS)
+    assert [axes.get_title() for axes in figures.ratios(summary).axes] == ["p-sim"]
+    assert len(figures.errors(summary).axes) == 2
+
+
+def test_table_has_a_row_a_cell_with_intervals_and_one_a_pool(surveys):
+    lines = coverage_table(coverage_summary(surveys, POOLS)).splitlines()
+    assert len(lines) == 2 + 4 + 2
     assert lines[2].startswith("| p-sim | white | published |")
-    assert lines[2].endswith("| - | - | 40 of 40 |")
+    assert lines[2].endswith("| - - - | - - - | - | 40 of 40 |")
+    assert "nan" not in "".join(lines)
     assert "(" in lines[3]
+    assert lines[-1].startswith("| all | both | adjustment |")
 
 
 def test_many_regimes_go_into_rows_of_four(surveys):
@@ -61,5 +69,10 @@ def test_many_regimes_go_into_rows_of_four(surveys):
     figure = figures.coverage(coverage_curve(many, stated_probabilities()))
     shown = [axes for axes in figure.axes if axes.axison]
     assert len({axes.get_position().y0 for axes in shown}) == 2
-    assert [axes.get_title() for axes in shown[:2]] == ["white\n0", "shared\n0"]
+    assert [axes.get_title() for axes in shown[:2]] == ["white 0", "shared 0"]
     assert len(shown) == 6
+
+
+def test_long_names_of_regimes_take_two_rows(surveys):
+    figure = figures.coverage(coverage_curve(surveys.assign(regime="gauss-markov-60"), stated_probabilities()))
+    assert figure.axes[0].get_title() == "gauss markov\n60"
