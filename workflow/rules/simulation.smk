@@ -74,9 +74,7 @@ rule coverage_cell:
         regime=lambda wildcards: STUDY.coverage.regimes[wildcards.regime].model_dump(
             mode="json", exclude={"noise_models"}
         ),
-        study=STUDY.coverage.model_dump(
-            mode="json", include={"n_surveys", "seed"}
-        ),
+        study=STUDY.coverage.model_dump(mode="json", include={"n_surveys", "seed"}),
         batch_size=STUDY.coverage.batch_size,
         work="results/coverage/work/{platform}-{regime}-{noise_model}",
         code=script_digest("coverage_cell"),
