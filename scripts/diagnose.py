@@ -8,7 +8,6 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.estimation.diagnostics import diagnose_samples
-    from linepose.estimation.noise_models import noise_model
     from linepose.pipeline.stages import (
         DIAGNOSTICS,
         OPTIMA,
@@ -23,11 +22,11 @@ with stage(snakemake) as log:
 
     platform = Platform.model_validate(snakemake.params.platform)
     optima = read_table(snakemake.input.optima, OPTIMA)
-    names, section = estimated_parameters(optima), noise_model(platform.noise_model).section
+    names = estimated_parameters(optima)
     chains = {}
     for name in optima["stage"]:
         table = read_table(Path(snakemake.input.samples) / f"{name}.parquet", SAMPLES)
-        chains[name] = diagnose_samples(samples_from_table(table, names), section)
+        chains[name] = diagnose_samples(samples_from_table(table, names))
     write_table(diagnostics_table(optima, chains), snakemake.output.diagnostics, DIAGNOSTICS)
     sigma = np.sqrt(np.diag(platform.start_covariance()))
     poses = pose_table(optima, {name: chain.sigma for name, chain in chains.items()}, platform.start_pose(), sigma)

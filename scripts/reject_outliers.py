@@ -6,7 +6,7 @@ with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.estimation.optimise import Search
     from linepose.estimation.outliers import OUTLIERS, OutlierSettings, outlier_table, reject_outliers, removal_order
-    from linepose.pipeline.platform_likelihood import platform_likelihood
+    from linepose.pipeline.platform_estimator import platform_likelihood
     from linepose.survey.observations import OBSERVATIONS, survey_from_table
     from linepose.tables import read_table, write_table
 

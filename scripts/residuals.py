@@ -5,7 +5,7 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.estimation.outliers import OUTLIERS, stage_observations
-    from linepose.pipeline.platform_likelihood import platform_likelihood
+    from linepose.pipeline.platform_estimator import platform_likelihood
     from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS, residual_tables
     from linepose.pipeline.stages import OPTIMA
     from linepose.survey.observations import OBSERVATIONS, survey_from_table

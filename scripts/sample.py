@@ -7,18 +7,16 @@ from adapter import stage
 
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
-    from linepose.config.study import sampling_settings
-    from linepose.estimation.noise_models import noise_model
     from linepose.estimation.outliers import OUTLIERS, stage_observations
-    from linepose.estimation.sampling import sample, stage_seed
+    from linepose.estimation.sampling import SamplingSettings, sample, stage_seed
     from linepose.pipeline.file_list import write_file_list
-    from linepose.pipeline.platform_likelihood import platform_likelihood
+    from linepose.pipeline.platform_estimator import platform_likelihood
     from linepose.pipeline.stages import OPTIMA, SAMPLES, sample_table
     from linepose.survey.observations import OBSERVATIONS, survey_from_table
     from linepose.tables import read_table, with_parameters, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
-    settings = sampling_settings(noise_model(platform.noise_model).section, snakemake.params.sampling)
+    settings = SamplingSettings.model_validate(snakemake.params.sampling)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
     likelihood = platform_likelihood(platform, survey)
     stages = stage_observations(read_table(snakemake.input.outliers, OUTLIERS))

@@ -1,9 +1,9 @@
+from .adjustment.settings import AdjustmentSettings as AdjustmentSettings
 from .check.platform import check_platform as check_platform
 from .errors import EstimationError as EstimationError
 from .errors import InputError as InputError
 from .errors import LineposeError as LineposeError
 from .estimation.optimise import Search as Search
-from .estimation.sampling import IndependenceSettings as IndependenceSettings
 from .estimation.sampling import SamplingSettings as SamplingSettings
 from .geometry.camera import Camera as Camera
 from .geometry.camera import CameraSigmas as CameraSigmas

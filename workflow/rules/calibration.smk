@@ -20,6 +20,36 @@ rule compile:
         "../../scripts/compile.py"
 
 
+rule adjust: # all at once: no observation is removed, and the posterior needs no chain
+    input:
+        observations="results/{platform}/observations.parquet",
+        compiled=compiled,
+        lost=remade_if_lost("results/{platform}/mcmc"),
+    output:
+        **{
+            name: f"results/{{platform}}/{name}.parquet" for name in (*STAGES, *ADJUSTED)
+        },
+        samples=directory("results/{platform}/mcmc"),
+        files="results/{platform}/mcmc_files.txt",
+    log:
+        "results/logs/{platform}/adjust.log",
+    benchmark:
+        "results/benchmarks/{platform}/adjust.tsv"
+    wildcard_constraints:
+        platform=names_of(ADJUSTED_PLATFORMS),
+    conda:
+        "../../environment.yml"
+    resources:
+        mem_mb=2000,
+    params:
+        platform=settings,
+        adjustment=section("adjustment"),
+        seed=STUDY.seed,
+        code=script_digest("adjust"),
+    script:
+        "../../scripts/adjust.py"
+
+
 rule reject_outliers:
     input:
         observations="results/{platform}/observations.parquet",
@@ -30,6 +60,8 @@ rule reject_outliers:
         "results/logs/{platform}/reject_outliers.log",
     benchmark:
         "results/benchmarks/{platform}/reject_outliers.tsv"
+    wildcard_constraints:
+        platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
     params:
@@ -48,6 +80,8 @@ rule optimise:
         "results/{platform}/optima.parquet",
     log:
         "results/logs/{platform}/optimise.log",
+    wildcard_constraints:
+        platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
     params:
@@ -70,6 +104,8 @@ rule sample:
         "results/logs/{platform}/sample.log",
     benchmark:
         "results/benchmarks/{platform}/sample.tsv"
+    wildcard_constraints:
+        platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
     threads: 2
@@ -77,7 +113,7 @@ rule sample:
         mem_mb=2000,
     params:
         platform=settings,
-        sampling=sampling,
+        sampling=section("sampling"),
         seed=STUDY.seed,
         code=script_digest("sample"),
     script:
@@ -93,11 +129,13 @@ rule diagnose:
         pose="results/{platform}/pose.parquet",
     log:
         "results/logs/{platform}/diagnose.log",
+    wildcard_constraints:
+        platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
     params:
         platform=settings,
-        sampling=sampling,
+        sampling=section("sampling"),
         code=script_digest("diagnose"),
     script:
         "../../scripts/diagnose.py"
@@ -112,6 +150,8 @@ rule residuals:
         points="results/{platform}/estimated_points.parquet",
     log:
         "results/logs/{platform}/residuals.log",
+    wildcard_constraints:
+        platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
     params:

@@ -7,7 +7,7 @@ from snakemake.logging import logger
 
 from linepose.config.project import load_project
 from linepose.errors import LineposeError
-from linepose.estimation.noise_models import NOISE_MODELS
+from linepose.estimation.noise_models import noise_model
 from linepose.experiments.registry import (
     EXPERIMENTS,
     compared_platforms,
@@ -15,6 +15,7 @@ from linepose.experiments.registry import (
 )
 from linepose.output.report.summary_file import summaries_on_disk
 from linepose.pipeline import code_digest, sections
+from linepose.pipeline.adjusted_tables import ADJUSTED, STAGES
 from linepose.pipeline.file_list import lost_files
 from linepose.pipeline.parent_process import COMMAND, SNAKEMAKE, exit_with_process
 from linepose.pipeline.run_lock import hold_run_lock
@@ -52,12 +53,25 @@ SCRIPTS = (
 )  # themselves, not copies
 
 PLATFORMS = [name for name in STUDY.platforms if name in PROJECT.platforms]
+REMOVING_PLATFORMS = [
+    name
+    for name, one in PROJECT.platforms.items()
+    if noise_model(one.noise_model).removes_outliers
+]
+ADJUSTED_PLATFORMS = [
+    name for name in PROJECT.platforms if name not in REMOVING_PLATFORMS
+]
 PAPER_RESULTS = []  # what `rule all` makes of the paper, where config/paper exists
 FURTHER_PAGES = {}  # that the report links to: title and address
 
 
 wildcard_constraints:
     platform="[A-Za-z0-9_-]+",
+
+
+def names_of(platforms):
+    """A pattern that these names fit and no other."""
+    return "|".join(platforms) or "[^\\s\\S]"
 
 
 TOLD = set()  # folders whose losses were told of
@@ -104,12 +118,21 @@ def experiment_results(platform):
     ]
 
 
+def adjusted_results(platform):
+    """What the errors were, of a platform whose noise model is the adjustment."""
+    if platform in REMOVING_PLATFORMS:
+        return []
+    return [f"results/{platform}/{name}.parquet" for name in ADJUSTED]
+
+
 def results_of(platform):
     """Every result of a platform, so that whichever of them is lost is made again."""
     names = ["points.parquet", "observations.parquet", "navigation_sigma.parquet"]
     names += ["map_frame.parquet", "outliers.parquet", "optima.parquet"]
     names += ["mcmc_files.txt", "pose.parquet", "diagnostics.parquet"]
     names += ["residuals.parquet", "estimated_points.parquet", "figures_files.txt"]
+    if platform in ADJUSTED_PLATFORMS:
+        names += [f"{name}.parquet" for name in ADJUSTED]
     if platform in PROJECT.simulated:
         names += ["simulated_files.txt", "truth.parquet", "detection.parquet"]
         names += ["extraction_accuracy.parquet", "detected_points.parquet"]
@@ -145,11 +168,6 @@ def platform_file(wildcards):
     return f"{STUDY.platforms_folder}/{wildcards.platform}.yaml"
 
 
-def sampling(wildcards):
-    """How the platform's noise model is sampled, as a rule's parameter."""
-    return sections.sampling_section(PROJECT, wildcards.platform)
-
-
 def section(key):
     """What config.yaml says under this key, as a rule's parameter."""
     return sections.study_section(PROJECT, key)
@@ -174,11 +192,7 @@ def experiment_inputs(experiment):
             files[f"other_{need}"] = result_of_compared(experiment, need)
     if experiment.log:
         files["record"] = record
-    if experiment.every_noise_model:
-        files["compiled"] = expand(
-            "results/compiled/{noise_model}.txt", noise_model=NOISE_MODELS
-        )
-    elif "observations" in experiment.needs:
+    if "observations" in experiment.needs:
         files["compiled"] = compiled
     return files
 
@@ -195,10 +209,7 @@ def experiment_parameters(experiment):
     """All that an experiment's entry says it takes from the configuration, as a rule's parameters."""
 
     def study(wildcards):
-        return {
-            key: sampling(wildcards) if key == "own_sampling" else section(key)
-            for key in experiment.study
-        }
+        return {key: section(key) for key in experiment.study}
 
     def others(wildcards):
         names = experiment.compared_with(PROJECT.platforms[wildcards.platform])
@@ -250,15 +261,21 @@ def figure_inputs(wildcards):
         if wildcards.platform in PROJECT.simulated
         else []
     )
-    return experiment_results(wildcards.platform) + detected
+    return (
+        experiment_results(wildcards.platform)
+        + adjusted_results(wildcards.platform)
+        + detected
+    )
 
 
 def reported(wildcards):
     """Every result of a platform that its page rests on."""
     always = ["observations", "outliers", "optima", "pose", "diagnostics", "residuals"]
-    return experiment_results(wildcards.platform) + [
-        f"results/{wildcards.platform}/{name}.parquet" for name in always
-    ]
+    return (
+        experiment_results(wildcards.platform)
+        + adjusted_results(wildcards.platform)
+        + [f"results/{wildcards.platform}/{name}.parquet" for name in always]
+    )
 
 
 def other_summaries(_):

@@ -19,6 +19,10 @@ for EXPERIMENT in EXPERIMENTS:
             f"results/logs/{{platform}}/{EXPERIMENT.name}.log",
         benchmark:
             f"results/benchmarks/{{platform}}/{EXPERIMENT.name}.tsv"
+        wildcard_constraints:
+            platform=names_of(
+                REMOVING_PLATFORMS if EXPERIMENT.removal else PROJECT.platforms
+            ),
         conda:
             "../../environment.yml"
         threads: EXPERIMENT.cores or workflow.cores or 1

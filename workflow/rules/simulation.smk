@@ -1,9 +1,6 @@
 # Surveys with a known truth: platforms that are simulated, and the coverage study over many surveys.
 
 
-SIMULATED = "|".join(PROJECT.simulated) or "[^\\s\\S]"  # a pattern that no name fits
-
-
 rule simulate:
     input:
         lost=remade_if_lost("results/{platform}/simulated"),
@@ -16,7 +13,7 @@ rule simulate:
     benchmark:
         "results/benchmarks/{platform}/simulate.tsv"
     wildcard_constraints:
-        platform=SIMULATED,
+        platform=names_of(PROJECT.simulated),
     conda:
         "../../environment.yml"
     threads: 2
@@ -41,7 +38,7 @@ rule measure_extraction:
     log:
         "results/logs/{platform}/measure_extraction.log",
     wildcard_constraints:
-        platform=SIMULATED,
+        platform=names_of(PROJECT.simulated),
     conda:
         "../../environment.yml"
     params:

@@ -12,7 +12,7 @@ from linepose.adjustment.hand_measured import HandMeasuredPrior, hand_measured
 from linepose.adjustment.heavy_tailed import with_tails
 from linepose.adjustment.many_points import MANY_POINTS, normalised_of_many, solve_many, some_points, spread_of_many
 from linepose.adjustment.measurements import KnownPoints, Measurements, measurements_from_survey
-from linepose.adjustment.normal import trailing_inverse
+from linepose.adjustment.normal import point_covariances, trailing_inverse
 from linepose.adjustment.posterior import Mixture, mixture
 from linepose.adjustment.residuals import normalised_residuals
 from linepose.adjustment.result import Adjustment
@@ -33,8 +33,12 @@ def adjust(
     hand_covariance: ArrayLike | None = None,
     settings: AdjustmentSettings | None = None,
     known_points: KnownPoints | None = None,
+    *,
+    start_pose: ArrayLike | None = None,
 ) -> Adjustment:
     """The camera's pose with its posterior, from a hand-measured pose (6,), which is start and prior.
+
+    With a start_pose (6,) the search begins there, and the hand measurement is the prior alone.
 
     hand_covariance (6, 6): of its position (m) and turn about body axes (rad); 0.1 m and 2 deg if None. Raises
     InputError for observations, covariances or sigmas of the camera that are of no use, EstimationError where no start
@@ -42,6 +46,7 @@ def adjust(
     """
     settings = settings or AdjustmentSettings()
     pose = check_pose(hand_measured_pose, "hand-measured pose")
+    start = pose if start_pose is None else check_pose(start_pose, "start pose")
     _check_camera(camera)
     hand = hand_measured(
         pose, np.asarray(default_hand_covariance() if hand_covariance is None else hand_covariance, dtype=float)
@@ -52,11 +57,11 @@ def adjust(
     knowledge = Knowledge(camera, hand if settings.hand_measured_prior else None, settings.clock_offset_sigma_s)
     if measurements.n_points <= MANY_POINTS:
         return assembled(
-            survey, measurements, knowledge, *_of_all(measurements, knowledge, pose, hand, settings), settings
+            survey, measurements, knowledge, *_of_all(measurements, knowledge, start, hand, settings), settings
         )
     few = measurements_from_survey(some_points(survey, settings.seed), camera, known_points, settings.line_period_s)
-    fit, found, curved, spread = _of_all(few, knowledge, pose, hand, settings)
-    start = replace(
+    fit, found, curved, spread = _of_all(few, knowledge, start, hand, settings)
+    nearby = replace(
         state_at(fit.state.pose, camera, start_points(measurements, camera, fit.state.pose), len(measurements.u_px)),
         principal_point_px=fit.state.principal_point_px,
         focal_length_m=fit.state.focal_length_m,
@@ -65,7 +70,7 @@ def adjust(
     many = solve_many(
         measurements,
         knowledge,
-        start,
+        nearby,
         found.levels,
         unit_weights(measurements),
         tails=bool(np.any(found.weights.of_measurement != 1)),
@@ -74,7 +79,14 @@ def adjust(
     spread = spread_of_many(spread, trailing_inverse(found.solution.done.upper, n), many.camera_covariance[-n:, -n:])
     normalised = normalised_of_many(many, measurements.n_points)
     fit = Fit(
-        many.state, many.z, many.q, many.weights, normalised, many.chi_squared, many.converged and found.converged
+        many.state,
+        many.z,
+        many.q,
+        many.weights,
+        normalised,
+        many.chi_squared,
+        many.converged and found.converged,
+        np.full((measurements.n_points, 3, 3), np.nan),
     )
     return assembled(survey, measurements, knowledge, fit, found, curved, spread, settings)
 
@@ -82,7 +94,7 @@ def adjust(
 def _of_all(
     measurements: Measurements,
     knowledge: Knowledge,
-    pose: Floats,
+    start: Floats,
     hand: HandMeasuredPrior,
     settings: AdjustmentSettings,
 ) -> tuple[Fit, Estimate, Curvature, Mixture]:
@@ -91,7 +103,7 @@ def _of_all(
         measurements,
         knowledge,
         replace(knowledge, hand=hand),
-        state_at(pose, knowledge.camera, start_points(measurements, knowledge.camera, pose), len(measurements.u_px)),
+        state_at(start, knowledge.camera, start_points(measurements, knowledge.camera, start), len(measurements.u_px)),
         settings,
     )
     curved = curvature(measurements, knowledge, found.solution, found.levels, found.weights)
@@ -105,6 +117,7 @@ def _of_all(
         normalised_residuals(solution.done),
         solution.done.chi_squared,
         found.converged,
+        point_covariances(solution.done.upper, measurements.n_points),
     )
     return fit, found, curved, spread
 

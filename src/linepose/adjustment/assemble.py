@@ -30,7 +30,8 @@ _INTERVAL: Final = (0.025, 0.975)
 class Fit:
     """The minimum of chi squared over all measurements.
 
-    z (L, 6), q (N, 6): the process; weights: of the tails; normalised (L, 2): residuals; chi_squared; converged.
+    z (L, 6), q (N, 6): the process; weights: of the tails; normalised (L, 2): residuals; chi_squared; converged;
+    point_covariance (K, 3, 3): NaN where it is not known.
     """
 
     state: State
@@ -40,6 +41,7 @@ class Fit:
     normalised: Floats
     chi_squared: float
     converged: bool
+    point_covariance: Floats
 
 
 def assembled(
@@ -64,6 +66,8 @@ def assembled(
     grid = measurements.row, measurements.column, survey.u_px.shape
     points = np.full((survey.n_points, 3), np.nan)
     points[measurements.points] = state.points_m
+    point_covariance = np.full((survey.n_points, 3, 3), np.nan)
+    point_covariance[measurements.points] = fit.point_covariance
     view_rows = np.empty(measurements.n_views, dtype=np.int64)
     view_rows[measurements.view] = measurements.row
     constants, view_weight = np.full((survey.n_observations, N_POSE), np.nan), np.full(survey.n_observations, np.nan)
@@ -74,6 +78,7 @@ def assembled(
         principal_point_px=state.principal_point_px,
         focal_length_m=state.focal_length_m,
         points_m=points,
+        point_covariance=point_covariance,
         levels=found.levels,
         level_intervals=_intervals(found, spread),
         corrections=gridded(state.correction, *grid),

@@ -9,6 +9,7 @@ offset, and of all that is not a point. Without an estimate of the clock offset 
 from typing import Final, NamedTuple
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from linepose.adjustment.compiling import kernel
 from linepose.adjustment.linearise import Linearised
@@ -199,6 +200,14 @@ def trailing_inverse(upper: Floats, size: int) -> Floats:
                 total -= upper[first + i, first + j] * inverse[j, column]
             inverse[i, column] = total / upper[first + i, first + i]
     return inverse @ inverse.T
+
+
+def point_covariances(upper: Floats, n_points: int) -> Floats:
+    """Covariances (K, 3, 3) of the points, which come first in a factor (n, n) with its residual column."""
+    n = upper.shape[0] - 1
+    inverse = solve_triangular(np.triu(upper[:n, :n]), np.eye(n))
+    rows = inverse[: 3 * n_points].reshape(n_points, 3, n)
+    return np.asarray(rows @ np.swapaxes(rows, 1, 2))
 
 
 @kernel

@@ -59,8 +59,8 @@ class Adjustment:
     """The estimated pose, how sure it is, and what the errors were; N observations of M points, as in the survey.
 
     pose (6,): at the mode, with a rotation vector; covariance (6, 6): the posterior's, of the pose's parameters;
-    principal_point_px, focal_length_m; points_m (M, 3): from the survey's origin, NaN for a point left out; levels: at
-    their mode; level_intervals (7, 2): what holds each with 95 %, NaN for one that was not estimated; corrections (N,
+    principal_point_px, focal_length_m; points_m (M, 3): from the survey's origin, NaN for a point left out;
+    point_covariance (M, 3, 3): at the levels' mode, NaN where it is not known; levels: at their mode; level_intervals (7, 2): what holds each with 95 %, NaN for one that was not estimated; corrections (N,
     M, 6): of the reported body poses (m, rad); constants (N, 6), drifts (N, M, 6): of the process, in its own units;
     view_weight (N,), measurement_weight (N, M): 1 is as good as the levels say, towards 0 is bad; normalised (N, M, 2):
     whitened residuals along and across the line, each a standard normal number if the model is right; samples:
@@ -75,6 +75,7 @@ class Adjustment:
     principal_point_px: float
     focal_length_m: float
     points_m: Floats
+    point_covariance: Floats
     levels: Levels
     level_intervals: Floats
     corrections: Floats

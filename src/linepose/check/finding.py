@@ -28,13 +28,12 @@ class Finding:
 
 @dataclass(frozen=True)
 class PredictedSigma:
-    """How well a number of the pose will be known: sigmas (m or rad) by hand, and predicted under each noise model."""
+    """How well a number of the pose will be known: sigmas (m or rad) by hand, and of the adjustment."""
 
     name: str
     unit: str
     hand: float
-    published: float
-    shared: float | None
+    predicted: float
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """What to drive next: for each motion, passes like the present ones with it, and the sigma that they would bring.
 
-Nothing here is a rule of thumb: the added passes are replayed on the points and calibrated.
+Nothing here is a rule of thumb: the added passes are replayed on the points, and the normal equations say what they
+bring.
 """
 
 from collections.abc import Callable
@@ -9,8 +10,9 @@ from typing import Final
 
 import numpy as np
 
+from linepose.adjustment.prediction import predicted_covariance
+from linepose.adjustment.result import Adjustment
 from linepose.arrays import Floats
-from linepose.check.information import published_covariance
 from linepose.check.replay import crossing
 from linepose.errors import EstimationError
 from linepose.geometry.camera import Camera
@@ -19,7 +21,7 @@ from linepose.survey.observations import Survey
 
 _ADDED: Final = 4
 _TILT_RAD: Final = float(np.radians(4.0))
-_DRAWS: Final = 1
+_PAUSE_US: Final = 60_000_000  # before the added passes
 _ENOUGH_POINTS: Final = 0.5  # of those that the passes had, to be still in view
 _WORTH: Final = 0.9  # of the sigma that plain repetition would bring
 
@@ -28,7 +30,10 @@ Move = Callable[[Survey, Floats], Survey]
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion in words that follow "drive four more passes", the covariance (6, 6) of the pose with them."""
+    """A motion in words that follow "drive four more passes", and the covariance (6, 6) with them.
+
+    Rotations are turns about the body's axes.
+    """
 
     words: str
     covariance: Floats
@@ -43,7 +48,21 @@ def spread_in_words(survey: Survey) -> str:
     return f"roll spreads over {roll:.1f} deg, pitch {pitch:.1f} deg, headings {360 - gaps.max():.0f} deg"
 
 
-def motions(survey: Survey, camera: Camera, pose: Floats, point_m: Floats) -> tuple[Motion, ...]:
+@dataclass(frozen=True)
+class Promise:
+    """What predictions rest on: camera, adjustment of the present passes, covariance (6, 6) of a prior if there is."""
+
+    camera: Camera
+    adjusted: Adjustment
+    hand_covariance: Floats | None
+
+    def covariance(self, survey: Survey, point_m: Floats) -> Floats:
+        """Covariance (6, 6) of a survey of points (M, 3), at the levels that the present passes have."""
+        found = self.adjusted
+        return predicted_covariance(survey, self.camera, found.pose, point_m, found.levels, self.hand_covariance)
+
+
+def motions(survey: Survey, promise: Promise, point_m: Floats) -> tuple[Motion, ...]:
     """What four more passes of each kind would bring; the first is plain repetition of the present ones.
 
     `survey` is a replayed one of points (M, 3). A motion that takes the points out of view is left out.
@@ -52,22 +71,22 @@ def motions(survey: Survey, camera: Camera, pose: Floats, point_m: Floats) -> tu
     some = _rows(survey, rows)
     found = []
     for words, move in _MOVES.items():
-        moved = _seen_again(move(some, np.nanmean(point_m, axis=0)), camera, pose, point_m)
+        moved = _seen_again(move(some, np.nanmean(point_m, axis=0)), promise.camera, promise.adjusted.pose, point_m)
         if np.isfinite(moved.u_px).sum() < _ENOUGH_POINTS * np.isfinite(some.u_px).sum():
             continue
         try:
-            covariance = published_covariance(_joined(survey, moved), camera, pose, point_m, _DRAWS)
+            covariance = promise.covariance(_joined(survey, moved), point_m)
         except EstimationError:
             continue
         found.append(Motion(words, covariance))
     return tuple(found)
 
 
-def best_motions(found: tuple[Motion, ...], direction: Floats) -> list[tuple[str, float]]:
-    """Motions that help along a direction (6,) of the pose more than repetition does, best first, with the sigma."""
+def best_motions(found: tuple[Motion, ...], index: int) -> list[tuple[str, float]]:
+    """Motions that help one of the six numbers more than repetition does, best first, with its sigma."""
     if not found:
         return []
-    sigma = {motion.words: float(np.sqrt(direction @ motion.covariance @ direction)) for motion in found}
+    sigma = {motion.words: float(np.sqrt(motion.covariance[index, index])) for motion in found}
     plain = sigma.get(_REPETITION, np.inf)
     better = [(words, value) for words, value in sigma.items() if words != _REPETITION and value < _WORTH * plain]
     return sorted(better, key=lambda pair: pair[1]) or [(_REPETITION, plain)]
@@ -137,7 +156,7 @@ def _seen_again(moved: Survey, camera: Camera, pose: Floats, point_m: Floats) ->
 def _joined(first: Survey, second: Survey) -> Survey:
     return Survey(
         number=np.concatenate([first.number, first.number.max() + 1 + np.arange(second.n_observations)]),
-        time_us=np.concatenate([first.time_us, second.time_us]),
+        time_us=np.concatenate([first.time_us, second.time_us + _later_us(first, second)]),
         u_px=np.concatenate([first.u_px, second.u_px]),
         position_m=np.concatenate([first.position_m, second.position_m]),
         euler_rad=np.concatenate([first.euler_rad, second.euler_rad]),
@@ -145,3 +164,11 @@ def _joined(first: Survey, second: Survey) -> Survey:
         nav_gap_s=np.concatenate([first.nav_gap_s, second.nav_gap_s]),
         origin_m=first.origin_m,
     )
+
+
+def _later_us(first: Survey, second: Survey) -> int:
+    """What added passes' times are later by, so that they come after the present ones; 0 without times."""
+    seen = first.time_us[np.isfinite(first.u_px)]
+    if seen.max() == seen.min():
+        return 0
+    return int(seen.max() - second.time_us[np.isfinite(second.u_px)].min()) + _PAUSE_US

@@ -156,13 +156,12 @@ def geometry_findings(
         return [*findings, error("hand measurement", str(fault), "check hand_measured and the navigation's axes")], ()
     hand = settings.hand_measured
     more += convention_findings(
-        recording_at, HandSigmas(hand.sigma_position_m, float(np.radians(hand.sigma_euler_deg)))
+        recording_at, HandSigmas(hand.sigma_position_m, float(np.radians(hand.sigma_rotation_deg)))
     )
     findings += more
     if any(finding.level == Level.ERROR for finding in more):
         return findings, ()
-    sigma = np.repeat([hand.sigma_position_m, np.radians(hand.sigma_euler_deg)], 3)
-    prediction = predict(survey, camera, pose, sigma, point_m)
+    prediction = predict(survey, camera, hand, settings.pose_prior() is not None, point_m)
     return [*findings, *prediction.findings], prediction.sigmas
 
 

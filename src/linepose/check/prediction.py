@@ -1,26 +1,32 @@
-"""The sigmas that the survey's geometry promises, and which motion is missing where one is too large."""
+"""The sigmas that a survey promises, and which motion is missing where one is too large.
+
+The observations are adjusted as they are, so that what is promised is what a run delivers; what more passes would bring
+follows from the normal equations of the same survey with them, at the levels that the adjustment found.
+"""
 
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from linepose.adjustment.settings import AdjustmentSettings
 from linepose.arrays import Floats
 from linepose.check.finding import Finding, PredictedSigma, error, ok, warning
-from linepose.check.information import published_covariance, shared_covariance
-from linepose.check.motions import best_motions, motions, spread_in_words
+from linepose.check.motions import Promise, best_motions, motions, spread_in_words
 from linepose.check.replay import replayed
-from linepose.errors import EstimationError, LineposeError
+from linepose.errors import EstimationError
+from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.identifiability import WORDS, identifiability, in_body_axes
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.geometry.rotations import left_jacobian_so3
+from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.observations import Survey
 
 TOO_LARGE: Final = 0.5  # of the hand measurement's sigma
 _SWEPT: Final = 0.5  # of the points, below which the replayed survey is not this one
 _UNITS: Final = ("m", "m", "m", "rad", "rad", "rad")
 _SUBJECT: Final = "predicted sigmas"
+_DRAWS: Final = AdjustmentSettings(n_draws=60, n_samples=10)
 
 
 @dataclass(frozen=True)
@@ -31,13 +37,13 @@ class Prediction:
     findings: tuple[Finding, ...]
 
 
-def predict(survey: Survey, camera: Camera, pose: Floats, hand_sigma: Floats, point_m: Floats) -> Prediction:
-    """What a calibration will know, from the geometry at a hand-measured pose (6,).
+def predict(survey: Survey, camera: Camera, hand: HandMeasured, prior: bool, point_m: Floats) -> Prediction:
+    """What a calibration will know, from the observations and the hand-measured pose.
 
-    hand_sigma (6,): how well the pose is known by hand, position (m) and turns about the body's axes (rad); point_m
-    (M, 3): the pattern points at that pose, from the survey's origin.
+    `prior`: whether the hand measurement counts as a prior; point_m (M, 3): the pattern's points at that pose, from the
+    survey's origin.
     """
-    ideal = replayed(survey, camera, pose, point_m)
+    ideal = replayed(survey, camera, hand.pose, point_m)
     swept = np.isfinite(ideal.u_px).sum() / np.isfinite(survey.u_px).sum()
     if swept < _SWEPT:
         found = (
@@ -46,55 +52,32 @@ def predict(survey: Survey, camera: Camera, pose: Floats, hand_sigma: Floats, po
         )
         advice = "check hand_measured.euler_deg (camera x lies along the scan line), and the navigation's yaw"
         return Prediction((), (warning(_SUBJECT, found, advice),))
+    settings = _DRAWS.replaced(hand_measured_prior=prior)
     try:
-        published = published_covariance(ideal, camera, pose, point_m)
-    except LineposeError as fault:
+        adjusted = AdjustmentEstimator(survey, camera, hand, settings).adjusted()
+    except EstimationError as fault:
         found = f"a direction of the pose stays open; {spread_in_words(survey)} ({fault})"
         advice = "add passes from other sides, at other distances, and with the vehicle rolled and pitched"
         return Prediction((), (error(_SUBJECT, found, advice),))
-    names, in_axes = in_body_axes(POSE_COLUMNS, pose, published)
-    sigma = np.sqrt(np.diag(in_axes))
-    shared_sigma = _shared_sigma(ideal, camera, pose)
+    names, in_axes = in_body_axes(POSE_COLUMNS, adjusted.pose, adjusted.covariance)
+    sigma, by_hand = np.sqrt(np.diag(in_axes)), np.sqrt(np.diag(hand.body_covariance))
     sigmas = tuple(
-        PredictedSigma(
-            WORDS[name],
-            unit,
-            float(hand_sigma[k]),
-            float(sigma[k]),
-            None if shared_sigma is None else float(shared_sigma[k]),
-        )
+        PredictedSigma(WORDS[name], unit, float(by_hand[k]), float(sigma[k]))
         for k, (name, unit) in enumerate(zip(names, _UNITS, strict=True))
     )
-    large = [one for one in sigmas if one.published > TOO_LARGE * one.hand]
+    large = [one for one in sigmas if one.predicted > TOO_LARGE * one.hand]
     if not large:
-        return Prediction(
-            sigmas, (ok(_SUBJECT, f"all below half of the hand measurement's; {spread_in_words(survey)}"),)
-        )
-    words = identifiability(names, in_axes, hand_sigma).weakest_in_words()
-    worst = max(large, key=lambda one: one.published / one.hand)
-    index = [WORDS[name] for name in names].index(worst.name)
-    direction = _axis_of_pose(pose)[index]
-    told = ", ".join(f"{one.name} {size(one.published, one.unit)} ({size(one.hand, one.unit)})" for one in large)
-    found = f"less than twice as good as by hand: {told}; weakest direction: {words}; {spread_in_words(survey)}"
-    ranked = best_motions(motions(ideal, camera, pose, point_m), direction)
+        told = f"all below half of the hand measurement's; {spread_in_words(survey)}"
+        return Prediction(sigmas, (ok(_SUBJECT, told),))
+    words = identifiability(names, in_axes, by_hand).weakest_in_words()
+    worst = max(large, key=lambda one: one.predicted / one.hand)
+    told = ", ".join(f"{one.name} {size(one.predicted, one.unit)} ({size(one.hand, one.unit)})" for one in large)
+    found = f"less than twice as good as by hand: {told}; known least: {words}; {spread_in_words(survey)}"
+    promise = Promise(camera, adjusted, hand.body_covariance if prior else None)
+    ranked = best_motions(motions(ideal, promise, point_m), sigmas.index(worst))
     ways = "; or ".join(f"{way}: {worst.name} to {size(value, worst.unit)}" for way, value in ranked[:2])
     advice = f"drive four more passes {ways}" if ways else "add passes from other sides and with other tilts"
     return Prediction(sigmas, (warning(_SUBJECT, found, advice),))
-
-
-def _shared_sigma(ideal: Survey, camera: Camera, pose: Floats) -> Floats | None:
-    try:
-        shared = shared_covariance(ideal, camera, pose)
-    except EstimationError:
-        return None
-    return None if shared is None else np.sqrt(np.diag(in_body_axes(POSE_COLUMNS, pose, shared)[1]))
-
-
-def _axis_of_pose(pose: Floats) -> Floats:
-    """Rows (6, 6): each number in body axes as a combination of the pose's parameters."""
-    rows = np.eye(6)
-    rows[3:, 3:] = left_jacobian_so3(pose[3:6])
-    return rows
 
 
 def size(value: float, unit: str) -> str:

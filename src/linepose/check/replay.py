@@ -57,24 +57,3 @@ def replayed(survey: Survey, camera: Camera, pose: Floats, point_m: Floats) -> S
     at = crossing(camera, pose, survey.position_m, survey.euler_rad, np.broadcast_to(point_m, survey.position_m.shape))
     seen = np.isfinite(survey.u_px) & np.isfinite(at.u_px)
     return replace(survey, position_m=at.position_m, u_px=np.where(seen, at.u_px, np.nan))
-
-
-def disturbed(survey: Survey, camera: Camera, distance_m: Floats, rng: np.random.Generator) -> Survey:
-    """The survey with errors as reported: of the body pose, of the pixel along the line and across it.
-
-    distance_m (N, M) is that of each point along the optical axis.
-    """
-    shape = survey.u_px.shape
-    usable = np.isfinite(survey.u_px)
-    covariance = np.where(usable[..., None, None], survey.covariance, np.eye(6))
-    values, vectors = np.linalg.eigh(covariance)
-    root = vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]
-    error = np.einsum("...ij,...j->...i", root, rng.standard_normal((*shape, 6)))
-    late_m = camera.sigmas.v_px / camera.focal_length_px * distance_m * rng.standard_normal(shape)
-    forward = matrix_from_euler(np.where(usable[..., None], survey.euler_rad, 0.0))[..., :, 0]
-    return replace(
-        survey,
-        position_m=survey.position_m + error[..., :3] + late_m[..., None] * forward,
-        euler_rad=survey.euler_rad + error[..., 3:],
-        u_px=survey.u_px + camera.sigmas.u_px * rng.standard_normal(shape),
-    )

@@ -28,12 +28,12 @@ def findings_table(report: CheckReport) -> Table:
 
 def sigmas_table(report: CheckReport) -> Table:
     """How well each number of the pose will be known."""
-    table = Table(title="predicted sigmas, if all observations are good", title_justify="left", box=SIMPLE)
+    table = Table(title="predicted sigmas", title_justify="left", box=SIMPLE)
     table.add_column("")
-    for heading in ("by hand", "predicted", "with errors alike in a view"):
+    for heading in ("by hand", "predicted"):
         table.add_column(heading, justify="right")
     for one in report.predicted:
-        style = "yellow" if one.published > 0.5 * one.hand else ""
+        style = "yellow" if one.predicted > 0.5 * one.hand else ""
         table.add_row(one.name, *_sizes(one), style=style)
     return table
 
@@ -52,10 +52,10 @@ def plain_sigmas(report: CheckReport) -> list[str]:
     """The predicted sigmas as lines."""
     if not report.predicted:
         return []
-    lines = [f"{'predicted sigmas':24s}{'by hand':>10s}{'predicted':>12s}{'with errors alike in a view':>30s}"]
+    lines = [f"{'predicted sigmas':24s}{'by hand':>10s}{'predicted':>12s}"]
     for one in report.predicted:
-        hand, published, shared = _sizes(one)
-        lines.append(f"{one.name:24s}{hand:>10s}{published:>12s}{shared:>30s}")
+        hand, predicted = _sizes(one)
+        lines.append(f"{one.name:24s}{hand:>10s}{predicted:>12s}")
     return lines
 
 
@@ -72,10 +72,8 @@ def _counted(count: int, what: str) -> str:
     return f"{count or 'no'} {what}{'' if count == 1 else 's'}"
 
 
-def _sizes(one: PredictedSigma) -> tuple[str, str, str]:
-    def told(value: float | None) -> str:
-        if value is None:
-            return "-"
+def _sizes(one: PredictedSigma) -> tuple[str, str]:
+    def told(value: float) -> str:
         return f"{1e3 * value:.0f} mm" if one.unit == "m" else f"{np.degrees(value):.2f} deg"
 
-    return told(one.hand), told(one.published), told(one.shared)
+    return told(one.hand), told(one.predicted)

@@ -32,7 +32,7 @@ def new(
         float | None,
         typer.Option(help="How well the tape was read, one sigma (m).", show_default="as docs/configuration.md says"),
     ] = None,
-    sigma_euler_deg: Annotated[
+    sigma_rotation_deg: Annotated[
         float | None,
         typer.Option(
             help="How well the angles are known, one sigma (deg).", show_default="as docs/configuration.md says"
@@ -90,7 +90,7 @@ def new(
 
         ask = f"Navigation log ({', '.join(FORMATS.names())})"
         navigation_format = _given(None, "--navigation-format", ask, str, "table")
-    sigmas = {"sigma_position_m": sigma_position_m, "sigma_euler_deg": sigma_euler_deg}
+    sigmas = {"sigma_position_m": sigma_position_m, "sigma_rotation_deg": sigma_rotation_deg}
     plain_table = navigation_format in {None, "", "table"}
     path = write_platform(
         platforms,

@@ -8,9 +8,9 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from linepose.pipeline.checks import Level
 from linepose.pipeline.pose_tables import PoseNumber
 from linepose.pipeline.summary import PlatformSummary
-from linepose.pipeline.verdict import Level
 
 _STYLES: Final = {Level.GOOD: "bold green", Level.CARE: "bold yellow", Level.BAD: "bold red"}
 _WORDS: Final = {Level.GOOD: "ok", Level.CARE: "care", Level.BAD: "bad"}

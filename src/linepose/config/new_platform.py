@@ -37,7 +37,7 @@ class NewPlatform:
     principal_point_px: float | None = None
     description: str = ""
     sigma_position_m: float = HandMeasured.model_fields["sigma_position_m"].default
-    sigma_euler_deg: float = HandMeasured.model_fields["sigma_euler_deg"].default
+    sigma_rotation_deg: float = HandMeasured.model_fields["sigma_rotation_deg"].default
     source: Literal["labelled_views", "scans"] = "labelled_views"
     dataset: str = ""
     navigation_format: str = ""
@@ -120,7 +120,7 @@ def _hand(new: NewPlatform) -> list[str]:
         f"  position_m: {_triple(new.position_m)} # {about['position_m']}",
         f"  euler_deg: {_triple(new.euler_deg)} # {about['euler_deg']}",
         f"  sigma_position_m: {_number(new.sigma_position_m)} # {about['sigma_position_m']}",
-        f"  sigma_euler_deg: {_number(new.sigma_euler_deg)} # {about['sigma_euler_deg']}",
+        f"  sigma_rotation_deg: {_number(new.sigma_rotation_deg)} # {about['sigma_rotation_deg']}",
     ]
 
 

@@ -99,9 +99,9 @@ class Platform(Settings):
     simulation: Simulation | None = Field(
         None, description="A simulated survey with a known truth: keys and units in linepose.simulation.settings."
     )
-    noise_model: NoiseModelName = Field(DEFAULT.name, description=f"The likelihood's model of the noise. {MEANINGS}")
+    noise_model: NoiseModelName = Field(DEFAULT.name, description=f"The model of the noise. {MEANINGS}")
     prior: Literal["none", "hand_measured"] = Field(
-        "none",
+        "hand_measured",
         description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start. "
         "none: the data decide alone, as in the paper.",
     )

@@ -5,12 +5,12 @@ from typing import Any
 
 from pydantic import Field, NonNegativeInt
 
+from linepose.adjustment.settings import AdjustmentSettings
 from linepose.config.coverage import CoverageSection
 from linepose.config.platform import read_yaml
-from linepose.estimation.noise_models import NOISE_MODELS, noise_model
 from linepose.estimation.optimise import Search
 from linepose.estimation.outliers import OutlierSettings
-from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
+from linepose.estimation.sampling import SamplingSettings
 from linepose.settings import Settings, validated
 
 
@@ -20,19 +20,6 @@ class DatasetSection(Settings):
     base_url: str = Field(description="Address below which the files stand.")
     sha256: dict[str, str] = Field(description="SHA-256 of each file, by its path in the data set.")
     urls: dict[str, str] = Field(default_factory=dict, description="Addresses of files that stand elsewhere.")
-
-
-def sampling_settings(section: str, values: dict[str, Any]) -> SamplingSettings | IndependenceSettings:
-    """The settings that a section of this name describes: sampling, or independence_sampling."""
-    if section == SamplingSettings.section:
-        return SamplingSettings.model_validate(values)
-    return IndependenceSettings.model_validate(values)
-
-
-def _sampled(section: str) -> str:
-    return (
-        f"MCMC of the noise models: {', '.join(one.name for one in NOISE_MODELS.values() if one.section == section)}."
-    )
 
 
 class Study(Settings):
@@ -52,17 +39,9 @@ class Study(Settings):
     seed: NonNegativeInt = Field(2017, description="Seed from which every random number is derived.")
     search: Search = Field(Search(), description="Optimisation.")
     outliers: OutlierSettings = Field(OutlierSettings(), description="Outlier removal.")
-    sampling: SamplingSettings = Field(SamplingSettings(), description=_sampled("sampling"))
-    independence_sampling: IndependenceSettings = Field(
-        IndependenceSettings(), description=_sampled("independence_sampling")
-    )
+    sampling: SamplingSettings = Field(SamplingSettings(), description="MCMC, of noise models with a likelihood.")
+    adjustment: AdjustmentSettings = Field(AdjustmentSettings(), description="The adjustment.")
     coverage: CoverageSection = Field(CoverageSection(), description="Coverage study; not part of the main job.")
-
-    def sampling_of(self, name: str) -> SamplingSettings | IndependenceSettings:
-        """The sampling section for a noise model, by name; raises InputError for an unknown one."""
-        section = getattr(self, noise_model(name).section)
-        assert isinstance(section, SamplingSettings | IndependenceSettings)
-        return section
 
 
 def load_dataset(path: Path) -> DatasetSection:

@@ -41,10 +41,9 @@ def split_r_hat(samples: Floats) -> Floats:
     return r_hat
 
 
-def diagnose_samples(samples: Floats, section: str = "sampling") -> ChainDiagnostics:
+def diagnose_samples(samples: Floats) -> ChainDiagnostics:
     """Diagnostics of samples (S, W, P), with a warning that says what to do, empty where there is nothing to say.
 
-    `section` is that of config.yaml which the chain's length came from. A walker that never moved has no
     autocorrelation: it counts as no sample, and the warning says so.
     """
     n_steps, n_walkers, n_parameters = samples.shape
@@ -59,25 +58,25 @@ def diagnose_samples(samples: Floats, section: str = "sampling") -> ChainDiagnos
     warnings = []
     if n_moved < n_walkers:
         warnings.append(
-            f"{n_walkers - n_moved} of {n_walkers} walkers never moved: raise {section}.n_burn_in and {section}.n_steps"
+            f"{n_walkers - n_moved} of {n_walkers} walkers never moved: raise sampling.n_burn_in and sampling.n_steps"
         )
     needed = int(np.ceil(MINIMUM_STEPS_PER_TIME * time.max()))
     if n_steps < needed:
         warnings.append(
             f"chain of {n_steps} steps is short for an autocorrelation time of {time.max():.0f}: "
-            f"set {section}.n_steps to {needed} or more"
+            f"set sampling.n_steps to {needed} or more"
         )
     effective = n_steps * n_moved / time
     if effective.min() < MINIMUM_SAMPLES:
         needed = int(np.ceil(n_steps * MINIMUM_SAMPLES / max(effective.min(), 1.0)))
         warnings.append(
-            f"{effective.min():.0f} effective samples are few, expected {MINIMUM_SAMPLES}: set {section}.n_steps to "
+            f"{effective.min():.0f} effective samples are few, expected {MINIMUM_SAMPLES}: set sampling.n_steps to "
             f"{needed} or more"
         )
     if r_hat.max() > MAXIMUM_R_HAT:
         warnings.append(
             f"split R-hat {r_hat.max():.3f} is above {MAXIMUM_R_HAT}: the walkers have not mixed: "
-            f"raise {section}.n_steps"
+            f"raise sampling.n_steps"
         )
     return ChainDiagnostics(
         acceptance_fraction=acceptance_fraction(samples),

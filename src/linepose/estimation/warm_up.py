@@ -2,8 +2,12 @@
 
 import numpy as np
 
-from linepose.estimation.noise_models import likelihood_of
+from linepose.adjustment.settings import AdjustmentSettings
+from linepose.estimation.estimator import Conditions
+from linepose.estimation.noise_models import estimator_of, likelihood_of
+from linepose.estimation.noise_models import noise_model as entry_of
 from linepose.geometry.camera import Camera
+from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.observations import Survey
 
 _CAMERA = Camera(focal_length_m=8e-3, pixel_pitch_m=8e-6, n_pixels=600, principal_point_px=300.0)
@@ -13,7 +17,12 @@ _N_POINTS = 3
 
 def warm_up(noise_model: str) -> None:
     """Evaluate a noise model, by name, once in every way that there is."""
-    likelihood = likelihood_of(noise_model, _survey(), _CAMERA, np.zeros(6))
+    if not entry_of(noise_model).removes_outliers:
+        hand = HandMeasured(position_m=(0.0, 0.0, 0.0), euler_deg=(0.0, 0.0, 0.0))
+        few = AdjustmentSettings(n_draws=10, n_samples=10)
+        estimator_of(noise_model, _survey(), Conditions(_CAMERA, hand, adjustment=few)).estimate(np.zeros(6))
+        return
+    likelihood = likelihood_of(noise_model, _survey(), _CAMERA)
     parameters = likelihood.start(np.zeros(6))
     likelihood.log_likelihood(parameters)
     likelihood.log_likelihoods(np.tile(parameters, (2, 1)))

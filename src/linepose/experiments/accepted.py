@@ -1,4 +1,4 @@
-"""What the experiments start from: the accepted observations' likelihood, their optimum, and its sampled covariance."""
+"""What the experiments start from: estimators of all and of the accepted observations, and the platform's estimate."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,10 +7,10 @@ import numpy as np
 
 from linepose.arrays import Floats
 from linepose.config.platform import Platform
+from linepose.estimation.estimator import Conditions, Estimator
 from linepose.estimation.outliers import OUTLIERS, stage_observations
-from linepose.geometry.pose import N_PARAMETERS
-from linepose.likelihood.base import Likelihood
-from linepose.pipeline.platform_likelihood import platform_likelihood
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
+from linepose.pipeline.platform_estimator import platform_estimator
 from linepose.pipeline.stages import OPTIMA, SAMPLES, samples_from_table
 from linepose.survey.observations import OBSERVATIONS, survey_from_table
 from linepose.tables import read_table
@@ -18,36 +18,33 @@ from linepose.tables import read_table
 
 @dataclass(frozen=True)
 class Accepted:
-    """A platform's likelihood of all its observations, `all`, and of those that the outlier removal accepted."""
+    """Estimators of all of a platform's observations, `all`, and of those that are accepted."""
 
-    all: Likelihood
-    accepted: Likelihood
+    all: Estimator
+    accepted: Estimator
 
 
 @dataclass(frozen=True)
 class Reference:
-    """The accepted observations' optimum (P,) and the pose's sampled covariance (6, 6)."""
+    """The accepted observations' pose (6,) and its covariance (6, 6), of its samples."""
 
-    parameters: Floats
+    pose: Floats
     covariance: Floats
 
-    @property
-    def pose(self) -> Floats:
-        """The optimum's pose (6,)."""
-        return self.parameters[:N_PARAMETERS]
 
-
-def read_accepted(platform: Platform, observations: Path | str, outliers: Path | str) -> Accepted:
-    """From the results of the stages `associate` and `reject_outliers`."""
+def read_accepted(
+    platform: Platform, conditions: Conditions, observations: Path | str, outliers: Path | str
+) -> Accepted:
+    """From the observations and the table of which are accepted."""
     survey = survey_from_table(read_table(observations, OBSERVATIONS))
-    likelihood = platform_likelihood(platform, survey)
+    estimator = platform_estimator(platform, survey, conditions)
     inliers = stage_observations(read_table(outliers, OUTLIERS))["inliers"]
-    return Accepted(likelihood, likelihood.select(inliers))
+    return Accepted(estimator, estimator.select(inliers))
 
 
-def read_reference(likelihood: Likelihood, optima: Path | str, samples: Path | str) -> Reference:
-    """From the results of the stages `optimise` and `sample`; `samples` is the folder of all stages' samples."""
-    names = list(likelihood.parameter_names)
+def read_reference(optima: Path | str, samples: Path | str) -> Reference:
+    """From the tables of optima and samples; `samples` is the folder of all stages' samples."""
+    names = list(POSE_COLUMNS)
     optimum = read_table(optima, OPTIMA).set_index("stage").loc["inliers", names]
-    chain = samples_from_table(read_table(Path(samples) / "inliers.parquet", SAMPLES), names[:N_PARAMETERS])
+    chain = samples_from_table(read_table(Path(samples) / "inliers.parquet", SAMPLES), names)
     return Reference(optimum.to_numpy(dtype=float, copy=True), np.cov(chain.reshape(-1, N_PARAMETERS).T))

@@ -4,7 +4,8 @@ from typing import Final
 
 import numpy as np
 
-from linepose.experiments.estimate import Estimate
+from linepose.estimation.estimator import Estimate
+from linepose.experiments.estimate import estimate_row
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_between, p_value
 from linepose.tables import floats, optional_floats
 
@@ -30,5 +31,7 @@ def agreement(first: Estimate, second: Estimate) -> dict[str, float]:
 
 def pair_row(first: Estimate, second: Estimate) -> dict[str, object]:
     """Two estimates and their agreement as columns of one row, those of each with `_1` or `_2` at their end."""
-    columns = {f"{key}_{k}": value for k, one in enumerate((first, second), 1) for key, value in one.row().items()}
+    columns = {
+        f"{key}_{k}": value for k, one in enumerate((first, second), 1) for key, value in estimate_row(one).items()
+    }
     return columns | agreement(first, second)

@@ -5,9 +5,9 @@ random direction and the cell's angle about a random axis.
 """
 
 import logging
-from collections.abc import Iterable
-from dataclasses import dataclass, field
-from typing import Final, Literal
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import pandas as pd
@@ -16,27 +16,26 @@ from numpy.typing import ArrayLike
 from pydantic import Field, PositiveFloat, PositiveInt
 
 from linepose.arrays import Floats
-from linepose.estimation.optimise import Search
-from linepose.estimation.optimisers import optimiser
+from linepose.errors import InputError
+from linepose.estimation.estimator import Estimator
 from linepose.experiments.experiment import Experiment, Section
 from linepose.experiments.inputs import Inputs, log_rows
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
-from linepose.likelihood.base import Likelihood
 from linepose.pipeline.batches import batch_ranges
 from linepose.settings import Settings
 from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
 _logger = logging.getLogger(__name__)
-OptimiserName = Literal["powell", "powell_in_front", "wide"]
 START_COLUMNS = tuple(f"start_{name}" for name in POSE_COLUMNS)
 
 BASIN: Final = pa.schema(
     [
         *texts("optimiser"),
         *whole_numbers("cell"),
-        *floats("distance_m", "angle_rad", *START_COLUMNS, *POSE_COLUMNS, "neg_log_likelihood"),
+        *floats("distance_m", "angle_rad", *START_COLUMNS),
+        *optional_floats(*POSE_COLUMNS, "neg_log_likelihood"),
         *whole_numbers("n_evaluations"),
         *floats("mahalanobis"),
         *flags("success"),
@@ -61,10 +60,10 @@ class BasinSettings(Settings):
     maximum_angle_deg: float = Field(60.0, gt=0, le=180, description="The grid reaches this angle from it (deg).")
     n_distances: PositiveInt = Field(30, description="Cells over the distance.")
     n_angles: PositiveInt = Field(30, description="Cells over the angle.")
-    optimisers: list[OptimiserName] = Field(
-        ["powell", "wide"],
-        min_length=1,
-        description="Searches to compare on the same starts. powell: on the paper's equations, where points behind the "
+    optimisers: list[str] = Field(
+        [],
+        description="Searches to compare on the same starts; the noise model's usual ones if empty. Of the adjustment: "
+        "gauss_newton. Of a likelihood: powell: on the paper's equations, where points behind the "
         "camera count as if in front, and with rotation components within +- pi. powell_in_front: as the poses are "
         "found, such points excluded, all ranges centred on the start. wide: rotations first, then least squares, then "
         "Powell.",
@@ -122,33 +121,32 @@ def start_pose(grid: BasinSettings, reference: ArrayLike, seed: int, cell: int) 
 
 @dataclass(frozen=True)
 class Sweep:
-    """A search from every cell: by which likelihood, around which reference pose (6,) with its covariance (6, 6).
+    """A search from every cell: by which estimator, around which reference pose (6,) with its covariance (6, 6).
 
     Success is a Mahalanobis distance to the reference below the threshold.
     """
 
-    likelihood: Likelihood
+    estimator: Estimator
     reference: Floats
     covariance: Floats
     grid: BasinSettings
     seed: int
-    search: Search = field(default_factory=Search)
     threshold: float = 0.1
 
     def attempt(self, optimiser_name: str, cell: int) -> dict[str, object]:
         """One row: a cell's start, where the search from it ended, and whether that is the reference."""
         distance_m, angle_rad = self.grid.offset(cell)
         start = start_pose(self.grid, self.reference, self.seed, cell)
-        found = optimiser(optimiser_name)(self.likelihood, start, self.search)
-        pose = found.parameters[:N_PARAMETERS]
-        mahalanobis = float(mahalanobis_distance(pose, self.reference, self.covariance))
+        found = self.estimator.search_by(optimiser_name, start)
+        known = np.all(np.isfinite(found.pose))
+        mahalanobis = float(mahalanobis_distance(found.pose, self.reference, self.covariance)) if known else np.inf
         return {
             "optimiser": optimiser_name,
             "cell": cell,
             "distance_m": distance_m,
             "angle_rad": angle_rad,
             **dict(zip(START_COLUMNS, start, strict=True)),
-            **dict(zip(POSE_COLUMNS, pose, strict=True)),
+            **dict(zip(POSE_COLUMNS, found.pose, strict=True)),
             "neg_log_likelihood": found.neg_log_likelihood,
             "n_evaluations": found.n_evaluations,
             "mahalanobis": mahalanobis,
@@ -192,6 +190,16 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> tu
     return (float(interval.low), float(interval.high))
 
 
+def chosen_searches(estimator: Estimator, names: Sequence[str], file: str) -> tuple[str, ...]:
+    """Names of the searches to sweep; raises InputError, naming the platform's file, for one that there is not."""
+    known = estimator.searches()
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        place = f"{file}: experiments.{SECTION.key}.optimisers"
+        raise InputError(place, unknown[0], f"of {', '.join(known)}", "correct the name, or leave the key out")
+    return tuple(names) or known[:2]
+
+
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     settings, reference = inputs.required(SECTION), inputs.reference
     sweep = Sweep(
@@ -200,11 +208,11 @@ def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
         reference.covariance,
         settings,
         inputs.seed,
-        inputs.search,
         settings.success_threshold,
     )
     ranges = batch_ranges(settings.n_cells, settings.batch_size)
-    parts = {f"{name}-{part}": (name, cells) for name in settings.optimisers for part, cells in ranges.items()}
+    names = chosen_searches(inputs.data.accepted, settings.optimisers, inputs.file)
+    parts = {f"{name}-{part}": (name, cells) for name in names for part, cells in ranges.items()}
     table = inputs.in_batches(lambda part: sweep.rows(*parts[part]), list(parts), BASIN)
     of_each = table.groupby("optimiser", sort=False)
     summary = pd.concat(
@@ -220,6 +228,5 @@ EXPERIMENT: Final = Experiment(
     outputs={"basin": BASIN, "basin_summary": BASIN_SUMMARY},
     run=_run,
     section=SECTION,
-    study=("seed", "search"),
     cores=None,
 )

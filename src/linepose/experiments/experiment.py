@@ -10,12 +10,14 @@ import pyarrow as pa
 from pydantic import Field, create_model
 
 from linepose.config.platform import Platform
+from linepose.estimation.noise_models import noise_model
 from linepose.experiments.inputs import Inputs
 from linepose.settings import Settings, validated
 
 Value = TypeVar("Value", covariant=True)
 
 ESTIMATE: Final = ("observations", "outliers", "optima", "samples")  # what most experiments start from
+SETTINGS: Final = ("seed", "search", "sampling", "adjustment")  # what of config.yaml an estimate takes
 
 
 def settings_class(name: str, fields: Mapping[str, Any]) -> type[Settings]:
@@ -70,7 +72,7 @@ class Experiment:
     `needs` names results of the platform: ones of `pipeline` by their rule inputs, ones of other experiments by file.
     `study` names the keys of config.yaml that it takes. An experiment that `compares` has a section with a list
     `platforms`: their observations and outliers are read too. `log`: it needs the raw navigation log. `truth`: it is
-    run for simulated platforms only. `every_noise_model`: it evaluates others than the platform's own. `cores`: how
+    run for simulated platforms only. `removal`: for those only whose noise model removes observations. `cores`: how
     many it can use; None for all there are, in batches that a killed run need not make again.
     """
 
@@ -82,11 +84,11 @@ class Experiment:
     wanted: Callable[[Any], object] = bool
     reads: tuple[Section[Any], ...] = ()
     needs: tuple[str, ...] = ESTIMATE
-    study: tuple[str, ...] = ()
+    study: tuple[str, ...] = SETTINGS
     compares: bool = False
     log: bool = False
     truth: bool = False
-    every_noise_model: bool = False
+    removal: bool = False
     cores: int | None = 1
 
     @property
@@ -107,6 +109,8 @@ class Experiment:
     def is_wanted(self, platform: Platform) -> bool:
         """Whether this experiment is run for a platform."""
         if self.truth and platform.simulation is None:
+            return False
+        if self.removal and not noise_model(platform.noise_model).removes_outliers:
             return False
         return self.section is None or bool(self.wanted(self.section.of(platform)))
 

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pandas as pd
 import pyarrow as pa
 
+from linepose.adjustment.settings import AdjustmentSettings
 from linepose.config.platform import Platform
-from linepose.config.study import sampling_settings
-from linepose.estimation.noise_models import noise_model
+from linepose.estimation.estimator import Conditions, Estimator
 from linepose.estimation.optimise import Search
-from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
+from linepose.estimation.sampling import SamplingSettings
 from linepose.experiments.accepted import Accepted, Reference, read_accepted, read_reference
+from linepose.geometry.camera import Camera
 from linepose.pipeline.batches import run_batches
+from linepose.pipeline.platform_estimator import platform_conditions, platform_estimator
 from linepose.tables import read_table
 
 if TYPE_CHECKING:
@@ -47,20 +49,20 @@ class Inputs:
 
     @cached_property
     def data(self) -> Accepted:
-        """The likelihood of all observations, and of the accepted ones."""
-        return read_accepted(self.platform, self.files["observations"], self.files["outliers"])
+        """Estimators of all observations, and of the accepted ones."""
+        return read_accepted(self.platform, self.conditions, self.files["observations"], self.files["outliers"])
 
     @cached_property
     def reference(self) -> Reference:
         """The accepted observations' optimum and the pose's sampled covariance."""
-        return read_reference(self.data.accepted, self.files["optima"], self.files["samples"])
+        return read_reference(self.files["optima"], self.files["samples"])
 
     @cached_property
     def other_data(self) -> dict[str, Accepted]:
         """As `data`, of the platforms that this one is compared with, by name, under this one's noise model."""
         files = zip(self.files["other_observations"], self.files["other_outliers"], strict=True)
         return {
-            name: read_accepted(other.replaced(noise_model=self.platform.noise_model), *pair)
+            name: read_accepted(self._alike(other), self.conditions_of(self._alike(other)), *pair)
             for (name, other), pair in zip(self.others.items(), files, strict=True)
         }
 
@@ -86,14 +88,28 @@ class Inputs:
         return seed
 
     @property
-    def search(self) -> Search:
-        """How optima are searched."""
-        return Search.model_validate(self.study["search"])
+    def conditions(self) -> Conditions:
+        """What is known of the platform beside its survey."""
+        return self.conditions_of(self.platform)
 
-    def sampling(self, key: str = "own_sampling") -> SamplingSettings | IndependenceSettings:
-        """How posteriors are sampled: as config.yaml says under a key, or of the platform's noise model."""
-        section = noise_model(self.platform.noise_model).section if key == "own_sampling" else key
-        return sampling_settings(section, self.study[key])
+    def conditions_of(self, platform: Platform, camera: Camera | None = None) -> Conditions:
+        """The same of another platform, or with another camera."""
+        return platform_conditions(
+            platform,
+            Search.model_validate(self.study["search"]),
+            SamplingSettings.model_validate(self.study["sampling"]),
+            AdjustmentSettings.model_validate(self.study["adjustment"]),
+            camera,
+        )
+
+    def estimator_with(self, camera: Camera) -> Estimator:
+        """The estimator of the accepted observations with another camera than the platform's."""
+        conditions = self.conditions_of(self.platform, camera)
+        return platform_estimator(self.platform, self.data.accepted.survey, conditions)
+
+    def _alike(self, other: Platform) -> Platform:
+        """Another platform with this one's noise model and prior, so that only its observations differ."""
+        return other.replaced(noise_model=self.platform.noise_model, prior=self.platform.prior)
 
     def in_batches(self, task: Callable[[str], pd.DataFrame], names: Sequence[str], schema: pa.Schema) -> pd.DataFrame:
         """The tables of all named batches, one below the other; those that a killed run finished are not made again."""

@@ -7,13 +7,12 @@ import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
 
-from linepose.estimation.optimise import Search
-from linepose.experiments.estimate import estimate_by_curvature, estimate_fields
+from linepose.estimation.estimator import Estimator
+from linepose.experiments.estimate import estimate_fields, estimate_row
 from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs
 from linepose.experiments.repeatability import SECTION
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
-from linepose.likelihood.base import Likelihood
 from linepose.tables import floats, whole_numbers
 
 _logger = logging.getLogger(__name__)
@@ -23,22 +22,20 @@ LEAVE_ONE_OUT: Final = pa.schema(
 )
 
 
-def leave_one_out(
-    likelihood: Likelihood, pose: ArrayLike, covariance: ArrayLike, search: Search | None = None
-) -> pd.DataFrame:
+def leave_one_out(estimator: Estimator, pose: ArrayLike, covariance: ArrayLike) -> pd.DataFrame:
     """One row an observation: the pose without it, and its influence, how far that lies from the full estimate.
 
     The influence is a distance in sigmas of the full estimate, a pose (6,) with its covariance (6, 6).
     """
     rows = []
-    numbers = likelihood.survey.number.tolist()
+    numbers = estimator.survey.number.tolist()
     for number in numbers:
-        rest = likelihood.select([other for other in numbers if other != number])
-        without = estimate_by_curvature(rest, pose, search)
+        rest = estimator.select([other for other in numbers if other != number])
+        without = rest.estimate(pose)
         rows.append(
             {
                 "left_out": number,
-                **without.row(),
+                **estimate_row(without),
                 "distance_m": float(euclidean_distance_m(without.pose, pose)),
                 "angle_rad": float(geodesic_angle_rad(without.pose, pose)),
                 "influence": float(mahalanobis_distance(without.pose, pose, covariance)),
@@ -49,7 +46,7 @@ def leave_one_out(
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     reference = inputs.reference
-    table = leave_one_out(inputs.data.accepted, reference.pose, reference.covariance, inputs.search)
+    table = leave_one_out(inputs.data.accepted, reference.pose, reference.covariance)
     worst = table.loc[table["influence"].idxmax()]
     _logger.info("most influential: observation %d, %.2f sigmas", worst["left_out"], worst["influence"])
     return {"leave_one_out": table}
@@ -61,5 +58,4 @@ EXPERIMENT: Final = Experiment(
     outputs={"leave_one_out": LEAVE_ONE_OUT},
     run=_run,
     section=SECTION,
-    study=("search",),
 )

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from pydantic import Field, PositiveFloat
 
 from linepose.arrays import Floats
-from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.experiment import ESTIMATE, Experiment, Section
 from linepose.experiments.inputs import Inputs, log_rows
 from linepose.geometry.camera import Camera, rays, undistort
 from linepose.geometry.plane import Plane, fit_plane, fit_plane_by_height, intersect
@@ -27,8 +27,9 @@ from linepose.geometry.rotations import (
     skew,
     small_rotation_by_euler,
 )
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS
 from linepose.settings import Settings
-from linepose.survey.observations import Survey
+from linepose.survey.observations import POSITION_COLUMNS, Survey
 from linepose.tables import floats, optional_floats, texts, whole_numbers
 
 _logger = logging.getLogger(__name__)
@@ -229,7 +230,8 @@ def _quadratic(jacobian: Floats, covariance: Floats) -> Floats:
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     platform, data, reference = inputs.platform, inputs.data, inputs.reference
     angle_rad = float(np.deg2rad(inputs.required(SECTION).perturbation_deg))
-    estimated = data.accepted.residuals(reference.parameters).point_m
+    points = inputs.table("estimated_points", ESTIMATED_POINTS)
+    estimated = points.loc[points["stage"] == "inliers", list(POSITION_COLUMNS)].to_numpy() - data.all.survey.origin_m
     plane = fit_plane(estimated)
     poses = {
         "hand_measured": (platform.start_pose(), platform.start_covariance()),
@@ -248,4 +250,5 @@ EXPERIMENT: Final = Experiment(
     outputs={"mapping": MAPPING, "mapping_summary": MAPPING_SUMMARY},
     run=_run,
     section=SECTION,
+    needs=(*ESTIMATE, "estimated_points"),
 )

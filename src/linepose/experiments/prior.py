@@ -6,8 +6,6 @@ have beside the hand measurement. Rotations are turns about the body's axes, whi
 """
 
 import logging
-from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -16,13 +14,12 @@ import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
-from linepose.estimation.identifiability import in_body_axes
+from linepose.estimation.identifiability import identifiability, in_body_axes
 from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs, log_rows
-from linepose.geometry.pose import N_PARAMETERS
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.likelihood.prior import PosePrior
-from linepose.pipeline.stages import SAMPLES
-from linepose.tables import flags, floats, read_table, texts
+from linepose.tables import flags, floats, texts
 
 _logger = logging.getLogger(__name__)
 
@@ -41,30 +38,47 @@ PRIOR_TABLE: Final = pa.schema(
 )
 
 
-def prior_table(
-    names: Sequence[str],
-    parameters: ArrayLike,
-    covariance: ArrayLike,
-    hand: PosePrior,
-    others: Mapping[str, tuple[float, float]],
-    counted_in: bool,
-) -> pd.DataFrame:
+IDENTIFIABILITY: Final = pa.schema(
+    [
+        *texts("parameter"),
+        *floats("prior_sigma", "posterior_sigma", "shrinkage", "weakest_direction", "weakest_shrinkage"),
+        *texts("weakest_in_words"),
+    ]
+)
+
+
+def prior_table(pose: ArrayLike, covariance: ArrayLike, hand: PosePrior, counted_in: bool) -> pd.DataFrame:
     """One row a parameter: estimate minus prior, the sigma of each, the data's weight, and who decided.
 
-    `names`, `parameters` (P,) and `covariance` (P, P) are the estimate's; `hand` is the hand measurement, in the
-    estimate as a prior or not, as `counted_in` says. `others` has centre and sigma of the prior that a noise model
-    brings for parameters beyond the pose; ones without are left out. Columns as in `PRIOR_TABLE`.
+    pose (6,) and covariance (6, 6) are the estimate's; `hand` is the hand measurement, in the estimate as a prior or
+    not, as `counted_in` says. Columns as in `PRIOR_TABLE`.
     """
-    vector = np.asarray(parameters, dtype=float)
-    turned_names, turned = in_body_axes(names, vector, covariance)
-    sigma = np.sqrt(np.diag(turned))
-    differences = hand.difference(vector[:N_PARAMETERS])
-    rows = [_row(turned_names[k], differences[k], sigma[k], hand.sigma()[k], counted_in) for k in range(N_PARAMETERS)]
-    for k, name in enumerate(names):
-        if name in others:
-            centre, prior_sigma = others[name]
-            rows.append(_row(name, vector[k] - centre, sigma[k], prior_sigma, True))
-    return pd.DataFrame(rows)
+    names, turned = in_body_axes(POSE_COLUMNS, pose, covariance)
+    sigma, differences = np.sqrt(np.diag(turned)), hand.difference(np.asarray(pose, dtype=float))
+    return pd.DataFrame(
+        [_row(names[k], differences[k], sigma[k], hand.sigma()[k], counted_in) for k in range(N_PARAMETERS)]
+    )
+
+
+def identifiability_table(pose: ArrayLike, covariance: ArrayLike, hand: PosePrior) -> pd.DataFrame:
+    """One row a number of the pose (6,): the hand measurement's sigma against that of the estimate's (6, 6).
+
+    Rotations are turns about the body's axes. Beside them stands the direction that the data narrow least. Columns as
+    in `IDENTIFIABILITY`.
+    """
+    names, posterior = in_body_axes(POSE_COLUMNS, pose, covariance)
+    found = identifiability(names, posterior, hand.sigma())
+    return pd.DataFrame(
+        {
+            "parameter": names,
+            "prior_sigma": found.prior_sigma,
+            "posterior_sigma": found.posterior_sigma,
+            "shrinkage": found.shrinkage,
+            "weakest_direction": found.weakest_direction,
+            "weakest_shrinkage": found.weakest_shrinkage,
+            "weakest_in_words": found.weakest_in_words(),
+        }
+    )
 
 
 def data_weight(sigma: ArrayLike, prior_sigma: ArrayLike, counted_in: bool) -> Floats:
@@ -93,19 +107,20 @@ def _decider(weight: float) -> str:
 
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
-    platform, likelihood = inputs.platform, inputs.data.accepted
-    names = likelihood.parameter_names
-    samples = read_table(Path(inputs.files["samples"]) / "inliers.parquet", SAMPLES)[list(names)]
-    table = prior_table(
-        names,
-        inputs.reference.parameters,
-        np.cov(samples.to_numpy().T),
-        platform.hand_measurement(),
-        likelihood.parameter_priors(),
-        platform.pose_prior() is not None,
-    )
+    platform, reference = inputs.platform, inputs.reference
+    hand, counted_in = platform.hand_measurement(), platform.pose_prior() is not None
+    table = prior_table(reference.pose, reference.covariance, hand, counted_in)
     log_rows(_logger, "%s: decided by %s, weight of the data %.2f", table, ("parameter", "decided_by", "data_weight"))
-    return {"prior": table}
+    identified = identifiability_table(reference.pose, reference.covariance, hand)
+    _logger.info("weakest direction: %s", identified["weakest_in_words"].iloc[0])
+    return {"prior": table, "identifiability": identified}
 
 
-EXPERIMENT: Final = Experiment(name="prior", title="Decided by data or prior", outputs={"prior": PRIOR_TABLE}, run=_run)
+EXPERIMENT: Final = Experiment(
+    name="prior",
+    title="Decided by data or prior",
+    outputs={"prior": PRIOR_TABLE, "identifiability": IDENTIFIABILITY},
+    run=_run,
+    needs=("optima", "samples"),
+    study=(),
+)

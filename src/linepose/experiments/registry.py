@@ -6,12 +6,11 @@ from typing import Any, Final
 from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.experiments import (
+    adjusted,
     basin,
     clock_offset,
-    consistency,
     leave_one_out,
     mapping,
-    noise_models,
     prior,
     repeatability,
     sensitivity,
@@ -33,8 +32,7 @@ EXPERIMENTS: Final[tuple[Experiment, ...]] = (
     basin.EXPERIMENT,
     mapping.EXPERIMENT,
     sensitivity.EXPERIMENT,
-    noise_models.EXPERIMENT,
-    consistency.EXPERIMENT,
+    adjusted.EXPERIMENT,
     clock_offset.EXPERIMENT,
     truth_error.EXPERIMENT,
 )

@@ -13,15 +13,13 @@ from numpy.typing import ArrayLike
 from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
 from linepose.errors import InputError
-from linepose.estimation.optimise import Search
-from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
+from linepose.estimation.estimator import Estimator
 from linepose.experiments.accepted import Accepted
 from linepose.experiments.agreement import AGREEMENT, agreement
-from linepose.experiments.estimate import estimate_by_sampling, estimate_fields, observation_list
+from linepose.experiments.estimate import estimate_fields, estimate_row, observation_list
 from linepose.experiments.experiment import Experiment, Section
 from linepose.experiments.inputs import Inputs
 from linepose.experiments.subsets import SubsetSettings, chosen_subsets
-from linepose.likelihood.base import Likelihood
 from linepose.settings import Settings
 from linepose.tables import texts
 
@@ -66,13 +64,7 @@ def check_disjoint(first: Sequence[int], second: Sequence[int], place: str) -> N
 
 
 def compare_subsets(
-    likelihood: Likelihood,
-    subsets: Mapping[str, Sequence[int]],
-    start: ArrayLike,
-    seed: int,
-    place: str,
-    search: Search | None = None,
-    settings: SamplingSettings | IndependenceSettings | None = None,
+    estimator: Estimator, subsets: Mapping[str, Sequence[int]], start: ArrayLike, seed: int, place: str
 ) -> pd.DataFrame:
     """One row for each of two named subsets, with sampled sigmas; both tell how far apart the two are; start (6,).
 
@@ -80,19 +72,18 @@ def compare_subsets(
     """
     first, second = subsets.values()
     check_disjoint(first, second, place)
-    estimates = [
-        estimate_by_sampling(likelihood.select(list(numbers)), start, seed, search, settings)
-        for numbers in (first, second)
-    ]
+    estimates = [estimator.select(list(numbers)).estimate(start, seed) for numbers in (first, second)]
     apart = agreement(*estimates)
-    rows = [{"subset": name, **estimate.row(), **apart} for name, estimate in zip(subsets, estimates, strict=True)]
+    rows = [
+        {"subset": name, **estimate_row(estimate), **apart} for name, estimate in zip(subsets, estimates, strict=True)
+    ]
     return pd.DataFrame(rows)
 
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     pair = named_pair(inputs.data, inputs.required(SECTION), inputs.file)
     place, start = f"{inputs.file}: experiments.{SECTION.key}", inputs.platform.start_pose()
-    table = compare_subsets(inputs.data.accepted, pair, start, inputs.seed, place, inputs.search, inputs.sampling())
+    table = compare_subsets(inputs.data.accepted, pair, start, inputs.seed, place)
     _logger.info("%.2f sigmas apart, p = %.2f", table["mahalanobis"].iloc[0], table["p_value"].iloc[0])
     return {"repeatability": table}
 
@@ -105,6 +96,5 @@ EXPERIMENT: Final = Experiment(
     section=SECTION,
     wanted=lambda settings: settings and settings.first,
     needs=("observations", "outliers"),
-    study=("seed", "search", "own_sampling"),
     cores=2,
 )

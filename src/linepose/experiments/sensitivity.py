@@ -12,16 +12,12 @@ import pyarrow as pa
 from numpy.typing import ArrayLike
 from pydantic import Field
 
-from linepose.estimation.noise_models import PUBLISHED
-from linepose.estimation.optimise import Search
-from linepose.experiments.estimate import estimate_by_curvature, estimate_fields
+from linepose.estimation.estimator import Estimator
+from linepose.experiments.estimate import estimate_fields, estimate_row
 from linepose.experiments.experiment import Experiment, Section
 from linepose.experiments.inputs import Inputs, log_rows
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
-from linepose.likelihood.base import Likelihood
-from linepose.likelihood.pixels import PixelLikelihood
-from linepose.pipeline.platform_likelihood import platform_likelihood
 from linepose.settings import Settings
 from linepose.tables import floats, optional_floats, texts
 
@@ -61,21 +57,16 @@ def camera_changes(camera: Camera) -> dict[str, Camera]:
     }
 
 
-def sensitivity(
-    nominal: Likelihood,
-    changes: Mapping[str, Likelihood],
-    start: ArrayLike,
-    search: Search | None = None,
-) -> pd.DataFrame:
+def sensitivity(nominal: Estimator, changes: Mapping[str, Estimator], start: ArrayLike) -> pd.DataFrame:
     """One row a change, the unchanged first: pose, sigma, and how far it moved from the unchanged; start pose (6,)."""
-    reference = estimate_by_curvature(nominal, start, search)
+    reference = nominal.estimate(start)
     rows = []
-    for name, likelihood in {NOMINAL: nominal, **changes}.items():
-        changed = reference if name == NOMINAL else estimate_by_curvature(likelihood, start, search)
+    for name, estimator in {NOMINAL: nominal, **changes}.items():
+        changed = reference if name == NOMINAL else estimator.estimate(start)
         rows.append(
             {
                 "change": name,
-                **changed.row(),
+                **estimate_row(changed),
                 "distance_m": float(euclidean_distance_m(changed.pose, reference.pose)),
                 "angle_rad": float(geodesic_angle_rad(changed.pose, reference.pose)),
                 "mahalanobis": float(mahalanobis_distance(changed.pose, reference.pose, reference.covariance)),
@@ -86,13 +77,11 @@ def sensitivity(
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     platform, nominal = inputs.platform, inputs.data.accepted
-    changes: dict[str, Likelihood] = {}
-    if platform.noise_model == PUBLISHED.name:  # the other models' residuals are in pixels
-        changes["residual in pixels"] = PixelLikelihood(nominal)
+    changes = dict(nominal.variations())
     for name, camera in camera_changes(platform.intrinsics()).items():
-        changes[name] = platform_likelihood(platform, nominal.survey, camera)
+        changes[name] = inputs.estimator_with(camera)
     changes |= {name: other.accepted for name, other in inputs.other_data.items()}
-    table = sensitivity(nominal, changes, platform.start_pose(), inputs.search)
+    table = sensitivity(nominal, changes, platform.start_pose())
     log_rows(_logger, "%s: %.2f sigmas", table, ("change", "mahalanobis"))
     return {"sensitivity": table}
 
@@ -104,6 +93,5 @@ EXPERIMENT: Final = Experiment(
     run=_run,
     section=SECTION,
     needs=("observations", "outliers"),
-    study=("search",),
     compares=True,
 )

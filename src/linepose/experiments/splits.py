@@ -11,14 +11,13 @@ from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
-from linepose.estimation.optimise import Search
+from linepose.estimation.estimator import Estimator
 from linepose.experiments.agreement import AGREEMENT, pair_row
-from linepose.experiments.estimate import estimate_by_curvature, estimate_fields
+from linepose.experiments.estimate import estimate_fields
 from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs
 from linepose.experiments.repeatability import SECTION
 from linepose.geometry.pose import N_PARAMETERS
-from linepose.likelihood.base import Likelihood
 from linepose.pipeline.batches import batch_ranges
 from linepose.tables import whole_numbers
 
@@ -46,18 +45,16 @@ def split_numbers(numbers: ArrayLike, size: int, seed: int, index: int) -> tuple
     return sorted(drawn[:size].tolist()), sorted(drawn[size:].tolist())
 
 
-def random_splits(
-    likelihood: Likelihood, start: ArrayLike, size: int, indices: Iterable[int], seed: int, search: Search | None = None
-) -> pd.DataFrame:
-    """One row a random split: the two poses, with sigmas from the curvature, and how far they lie apart; start (6,).
+def random_splits(estimator: Estimator, start: ArrayLike, size: int, indices: Iterable[int], seed: int) -> pd.DataFrame:
+    """One row a random split: the two poses, without samples, and how far they lie apart; start (6,).
 
     A row depends on the seed and its index alone. Where a subset leaves a direction of the pose open, its sigmas and
     the distance in sigmas are NaN.
     """
     rows = []
     for index in indices:
-        halves = split_numbers(likelihood.survey.number, size, seed, index)
-        first, second = (estimate_by_curvature(likelihood.select(half), start, search) for half in halves)
+        halves = split_numbers(estimator.survey.number, size, seed, index)
+        first, second = (estimator.select(half).estimate(start) for half in halves)
         rows.append({"split": index, **pair_row(first, second)})
     return pd.DataFrame(rows)
 
@@ -85,12 +82,12 @@ def sigma_factor(splits: pd.DataFrame) -> float:
 
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
-    settings, likelihood = inputs.required(SECTION), inputs.data.accepted
-    size = settings.split_size or likelihood.survey.n_observations // 2
+    settings, estimator = inputs.required(SECTION), inputs.data.accepted
+    size = settings.split_size or estimator.survey.n_observations // 2
     ranges = batch_ranges(settings.n_splits, _BATCH)
-    start, seed, search = inputs.reference.pose, inputs.seed, inputs.search
+    start, seed = inputs.reference.pose, inputs.seed
     table = inputs.in_batches(
-        lambda name: random_splits(likelihood, start, size, ranges[name], seed, search), list(ranges), SPLITS
+        lambda name: random_splits(estimator, start, size, ranges[name], seed), list(ranges), SPLITS
     )
     _logger.info("%d splits, %.0f %% with p < 0.05", len(table), 100 * (table["p_value"] < 0.05).mean())
     return {"splits": table}
@@ -103,6 +100,5 @@ EXPERIMENT: Final = Experiment(
     run=_run,
     section=SECTION,
     wanted=lambda settings: settings and settings.n_splits,
-    study=("seed", "search"),
     cores=None,
 )

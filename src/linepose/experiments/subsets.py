@@ -11,13 +11,11 @@ from numpy.typing import ArrayLike
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt, model_validator
 
 from linepose.errors import InputError
-from linepose.estimation.optimise import Search
-from linepose.estimation.sampling import IndependenceSettings, SamplingSettings
+from linepose.estimation.estimator import Estimator
 from linepose.experiments.accepted import Accepted
-from linepose.experiments.estimate import estimate_by_sampling, estimate_fields, observation_list
+from linepose.experiments.estimate import estimate_fields, estimate_row, observation_list
 from linepose.experiments.experiment import Experiment, Section
 from linepose.experiments.inputs import Inputs, log_rows
-from linepose.likelihood.base import Likelihood
 from linepose.settings import Settings
 from linepose.survey.body_angles import BODY_ANGLES, body_angles_rad
 from linepose.survey.observations import Survey
@@ -112,25 +110,19 @@ def chosen_subsets(data: Accepted, settings: Mapping[str, SubsetSettings], place
 
 
 def subset_estimates(
-    likelihood: Likelihood,
-    subsets: Mapping[str, Sequence[int]],
-    start: ArrayLike,
-    seed: int,
-    search: Search | None = None,
-    settings: SamplingSettings | IndependenceSettings | None = None,
+    estimator: Estimator, subsets: Mapping[str, Sequence[int]], start: ArrayLike, seed: int
 ) -> pd.DataFrame:
     """One row a named subset: its observations, pose, sampled sigmas and -log L; start pose (6,)."""
     rows = []
     for name, numbers in subsets.items():
-        estimate = estimate_by_sampling(likelihood.select(list(numbers)), start, seed, search, settings)
-        rows.append({"subset": name, **estimate.row()})
+        estimate = estimator.select(list(numbers)).estimate(start, seed)
+        rows.append({"subset": name, **estimate_row(estimate)})
     return pd.DataFrame(rows)
 
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     subsets = chosen_subsets(inputs.data, inputs.required(SECTION), f"{inputs.file}: experiments.{SECTION.key}")
-    start, sampling = inputs.platform.start_pose(), inputs.sampling()
-    table = subset_estimates(inputs.data.accepted, subsets, start, inputs.seed, inputs.search, sampling)
+    table = subset_estimates(inputs.data.accepted, subsets, inputs.platform.start_pose(), inputs.seed)
     log_rows(_logger, "%s: observations %s, -log L %.6f", table, ("subset", "observations", "neg_log_likelihood"))
     return {"subsets": table}
 
@@ -142,6 +134,5 @@ EXPERIMENT: Final = Experiment(
     run=_run,
     section=SECTION,
     needs=("observations", "outliers"),
-    study=("seed", "search", "own_sampling"),
     cores=2,
 )

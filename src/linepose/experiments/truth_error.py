@@ -96,5 +96,6 @@ EXPERIMENT: Final = Experiment(
     outputs={"truth_error": TRUTH_ERROR},
     run=_run,
     needs=("optima", "samples", "truth"),
+    study=(),
     truth=True,
 )

@@ -44,4 +44,6 @@ EXPERIMENT: Final = Experiment(
     outputs={"uncertainty": UNCERTAINTY},
     run=_run,
     needs=("optima", "pose"),
+    study=(),
+    removal=True,
 )

@@ -15,12 +15,12 @@ import pandas as pd
 
 from linepose.arrays import Floats
 from linepose.config.platform import Platform, load_platform
-from linepose.estimation.importance import importance_samples
 from linepose.estimation.optimise import laplace_covariance, minimise
 from linepose.experiments.truth_error import truth_error_table
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.paper.declarations import load_declarations
+from linepose.paper.importance import importance_samples
 from linepose.simulation.survey import faulty_observations, simulate_survey
 
 QUANTILES: Final = (0.005, 0.5, 0.995)

@@ -10,22 +10,21 @@ import numpy as np
 import pandas as pd
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
+from linepose.adjustment.settings import AdjustmentSettings
 from linepose.config.platform import Platform
 from linepose.config.study import Study
 from linepose.errors import InputError
+from linepose.estimation.adjustment_estimator import adjustment_estimator
 from linepose.estimation.diagnostics import diagnose_samples
+from linepose.estimation.estimator import Conditions
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, likelihood_of, noise_model
 from linepose.estimation.optimise import Search
 from linepose.estimation.outliers import OutlierSettings, outlier_table, reject_outliers, stage_observations
-from linepose.estimation.sampling import (
-    IndependenceSettings,
-    SamplingSettings,
-    sample,
-    stage_seed,
-)
+from linepose.estimation.sampling import SamplingSettings, sample, stage_seed
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood.prior import pose_prior
+from linepose.pipeline.adjusted_tables import adjusted_tables
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.residual_tables import residual_tables
 from linepose.pipeline.results import Results
@@ -43,6 +42,7 @@ from linepose.survey.observations import (
     COVARIANCE_COLUMNS,
     EULER_COLUMNS,
     POSITION_COLUMNS,
+    Survey,
     check_determined,
     survey_from_table,
 )
@@ -62,18 +62,17 @@ class CalibrationSettings(Settings):
     Examples
     --------
     >>> import linepose
-    >>> linepose.CalibrationSettings(threshold_px=4.0).noise_model
-    'balanced'
+    >>> linepose.CalibrationSettings(prior="none").noise_model
+    'adjustment'
     """
 
     noise_model: NoiseModelName = Field(DEFAULT.name, description=f"The noise model. {MEANINGS}")
     prior: Literal["none", "hand_measured"] = _as_in(Platform, "prior")
     threshold_px: PositiveFloat = _as_in(OutlierSettings, "threshold_px")
     minimum_observations: int = _as_in(OutlierSettings, "minimum_observations")
-    search: Search = Field(Search(), description="Optimisation.")
-    sampling: SamplingSettings | IndependenceSettings | None = Field(
-        None, description="Sampling; as the noise model has it where it is None."
-    )
+    search: Search = _as_in(Study, "search")
+    sampling: SamplingSettings = _as_in(Study, "sampling")
+    adjustment: AdjustmentSettings = _as_in(Study, "adjustment")
     seed: NonNegativeInt = _as_in(Study, "seed")
 
 
@@ -84,7 +83,7 @@ def calibrate(
     settings: CalibrationSettings | None = None,
     name: str = "calibration",
 ) -> Calibration:
-    """The camera's pose on the vehicle, with outliers removed and the uncertainty sampled.
+    """The camera's pose on the vehicle, and how sure it is.
 
     Parameters
     ----------
@@ -125,9 +124,25 @@ def calibrate(
     observations = _checked(observations)
     survey = survey_from_table(observations)
     check_determined(survey, N_PARAMETERS)
+    make = _removed_and_sampled if noise_model(settings.noise_model).removes_outliers else _adjusted
+    tables = {"observations": observations, **make(survey, camera, hand_measured, settings)}
+    results = Results(name, in_memory=tables)
+    return Calibration(results, hand_measured, camera, settings.threshold_px, settings.noise_model)
+
+
+def _adjusted(
+    survey: Survey, camera: Camera, hand_measured: HandMeasured, settings: CalibrationSettings
+) -> dict[str, pd.DataFrame]:
+    conditions = Conditions(camera, hand_measured, settings.prior == "hand_measured", adjustment=settings.adjustment)
+    return adjusted_tables(adjustment_estimator(survey, conditions), settings.seed)
+
+
+def _removed_and_sampled(
+    survey: Survey, camera: Camera, hand_measured: HandMeasured, settings: CalibrationSettings
+) -> dict[str, pd.DataFrame]:
     start, hand_covariance = hand_measured.pose, hand_measured.covariance
     prior = pose_prior(start, hand_covariance) if settings.prior == "hand_measured" else None
-    likelihood = likelihood_of(settings.noise_model, survey, camera, start, prior)
+    likelihood = likelihood_of(settings.noise_model, survey, camera, prior)
     stages = reject_outliers(likelihood, start, settings.minimum_observations, settings.search)
     outliers = outlier_table(stages, settings.threshold_px)
     accepted = {_STAGE: stage_observations(outliers)[_STAGE]}
@@ -135,13 +150,11 @@ def calibrate(
     names = likelihood.parameter_names
     optimum = optima.loc[0, list(names)].to_numpy(dtype=float, copy=True)
     seed = stage_seed(settings.seed, len(accepted[_STAGE]))
-    sampling = settings.sampling or noise_model(settings.noise_model).sampling()
-    chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, sampling)
+    chain = sample(likelihood.select(accepted[_STAGE]), optimum, seed, settings.sampling)
     samples = sample_table(chain, names)
-    diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)), sampling.section)
+    diagnostics = diagnose_samples(samples_from_table(samples, estimated_parameters(optima)))
     residuals, points = residual_tables(likelihood, accepted, {_STAGE: optimum})
-    tables = {
-        "observations": observations,
+    return {
         "outliers": outliers,
         "optima": optima,
         f"mcmc/{_STAGE}": samples,
@@ -150,8 +163,6 @@ def calibrate(
         "residuals": residuals,
         "estimated_points": points,
     }
-    results = Results(name, in_memory=tables)
-    return Calibration(results, hand_measured, camera, settings.threshold_px, settings.noise_model)
 
 
 def _checked(observations: pd.DataFrame) -> pd.DataFrame:

@@ -9,12 +9,13 @@ from scipy.special import chdtri
 
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
+from linepose.pipeline.adjusted_tables import VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
+from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence
 from linepose.pipeline.pose_tables import PoseNumber, rotation_vector_numbers
 from linepose.pipeline.residual_tables import intraclass_correlation
 from linepose.pipeline.results import Results
 from linepose.pipeline.table_checks import accepted_rows, stage_rows
-from linepose.pipeline.verdict import Evidence
 from linepose.survey.body_angles import body_angles_rad
 from linepose.survey.observations import Survey
 from linepose.tables import floats, optional_floats, whole_numbers
@@ -39,7 +40,7 @@ def gather_evidence(calibration: Calibration) -> Evidence:
     outliers = calibration.outlier_removal
     accepted = accepted_rows(outliers)
     worst = accepted.loc[accepted["error_px"].idxmax()]
-    farthest = max(numbers, key=lambda number: abs(number.difference_sigmas))
+    hand_parameter, hand_sigmas = _from_hand(numbers, chain)
     wrong = max(numbers, key=lambda number: abs(number.error_sigmas or 0.0))
     most_influential, influence = _influence(results)
     return Evidence(
@@ -57,8 +58,9 @@ def gather_evidence(calibration: Calibration) -> Evidence:
         worst_observation=int(worst["observation"]),
         worst_error_px=float(worst["error_px"]),
         threshold_px=calibration.threshold_px,
-        hand_sigmas=abs(farthest.difference_sigmas),
-        hand_parameter=farthest.name,
+        hand_sigmas=hand_sigmas,
+        hand_parameter=hand_parameter,
+        adjusted=_adjusted(results, chain),
         undecided=tuple(number.name for number in numbers if number.sigma >= number.hand_sigma),
         sigma_factor=_sigma_factor(results),
         most_influential=most_influential,
@@ -86,6 +88,35 @@ def _sigma_factor(results: Results) -> float | None:
     distance = results.table("splits", _SPLITS)["mahalanobis"].dropna()
     median = np.sqrt(chdtri(N_PARAMETERS, 0.5))  # of a chi distribution
     return float(distance.median() / median) if len(distance) else None
+
+
+def _from_hand(numbers: list[PoseNumber], chain: pd.DataFrame) -> tuple[str, float]:
+    """The number that lies farthest from the hand measurement, and how many sigmas.
+
+    Where the hand measurement is a prior of an adjustment, that of the data alone counts.
+    """
+    alone = chain["disagreement_sigmas"].to_numpy(dtype=float)
+    if len(alone) >= len(numbers) and np.isfinite(alone[: len(numbers)]).all():
+        farthest = int(np.argmax(np.abs(alone[: len(numbers)])))
+        return numbers[farthest].name, float(abs(alone[farthest]))
+    most = max(numbers, key=lambda number: abs(number.difference_sigmas))
+    return most.name, abs(most.difference_sigmas)
+
+
+def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence | None:
+    if not np.isfinite(chain["least_eigenvalue"]).any():
+        return None
+    views = results.table("adjusted_views", VIEWS)
+    doubtful = views[views["fault"] != ""]
+    return AdjustedEvidence(
+        float(chain["least_eigenvalue"].iloc[0]),
+        float(chain["effective_sample_size"].min()),
+        float(chain["pareto_shape"].iloc[0]),
+        tuple(
+            DoubtfulView(int(row["observation"]), float(row["weight"]), str(row["fault"]))
+            for _, row in doubtful.iterrows()
+        ),
+    )
 
 
 def _influence(results: Results) -> tuple[int | None, float | None]:

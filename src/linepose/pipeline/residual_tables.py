@@ -8,9 +8,10 @@ import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
 
+from linepose.arrays import Floats
 from linepose.likelihood.base import Likelihood
 from linepose.survey.observations import POSITION_COLUMNS
-from linepose.tables import floats, texts, whole_numbers
+from linepose.tables import floats, optional_floats, texts, whole_numbers
 
 _UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))
 _AXES = ("north", "east", "down")
@@ -24,7 +25,7 @@ RESIDUALS: Final = pa.schema(
     ]
 )
 ESTIMATED_POINTS: Final = pa.schema(
-    [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS, *POINT_COVARIANCE_COLUMNS)]
+    [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS), *optional_floats(*POINT_COVARIANCE_COLUMNS)]
 )
 
 
@@ -55,22 +56,20 @@ def residual_tables(
                 }
             )
         )
-        known = np.flatnonzero(np.all(np.isfinite(found.point_m), axis=1))
-        position = found.point_m[known] + survey.origin_m
-        covariance = found.point_covariance[known]
-        points.append(
-            pd.DataFrame(
-                {
-                    "stage": stage,
-                    "point": known.astype(np.int64),
-                    **{name: position[:, k] for k, name in enumerate(POSITION_COLUMNS)},
-                    **{
-                        name: covariance[:, i, j] for name, (i, j) in zip(POINT_COVARIANCE_COLUMNS, _UPPER, strict=True)
-                    },
-                }
-            )
-        )
+        points.append(point_rows(stage, found.point_m, found.point_covariance, survey.origin_m))
     return pd.concat(residuals, ignore_index=True), pd.concat(points, ignore_index=True)
+
+
+def point_rows(stage: str, point_m: Floats, covariance_m2: Floats, origin_m: Floats) -> pd.DataFrame:
+    """One row an estimated point, in map coordinates; columns as in `ESTIMATED_POINTS`.
+
+    point_m (M, 3): from the origin (3,), NaN for one without an estimate; covariance_m2 (M, 3, 3).
+    """
+    known = np.flatnonzero(np.all(np.isfinite(point_m), axis=1))
+    position, covariance = point_m[known] + origin_m, covariance_m2[known]
+    columns = {name: position[:, k] for k, name in enumerate(POSITION_COLUMNS)}
+    columns |= {name: covariance[:, i, j] for name, (i, j) in zip(POINT_COVARIANCE_COLUMNS, _UPPER, strict=True)}
+    return pd.DataFrame({"stage": stage, "point": known.astype(np.int64), **columns})
 
 
 def intraclass_correlation(residuals: pd.DataFrame, column: str) -> float:

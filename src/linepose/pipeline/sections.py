@@ -8,7 +8,6 @@ from linepose.pipeline.provenance import plain_settings
 
 PLATFORM: Final = "platform"
 OTHERS: Final = "others"
-_SAMPLING_OF_PLATFORM: Final = {"sampling", "own_sampling"}
 GROUPS: Final = {"sections", "study"}
 _OF_NO_EFFECT: Final = {"description", "experiments", "outline", "map_frame"}  # on what is calibrated
 
@@ -16,11 +15,6 @@ _OF_NO_EFFECT: Final = {"description", "experiments", "outline", "map_frame"}  #
 def platform_section(project: Project, platform: str) -> dict[str, Any]:
     """What a platform's file says of all that a calibration rests on."""
     return project.platforms[platform].model_dump(mode="json", exclude=_OF_NO_EFFECT)
-
-
-def sampling_section(project: Project, platform: str) -> dict[str, Any]:
-    """How the platform's noise model is sampled."""
-    return project.study.sampling_of(project.platforms[platform].noise_model).model_dump(mode="json")
 
 
 def study_section(project: Project, name: str) -> Any:
@@ -40,8 +34,6 @@ def present_section(project: Project, platform: str, name: str, recorded: Any, e
         found: Any = {key: value for key, value in whole.items() if key in recorded or key not in _OF_NO_EFFECT}
     elif name == OTHERS:
         found = {other: platform_section(project, other) for other in recorded if other in project.platforms}
-    elif name in _SAMPLING_OF_PLATFORM:
-        found = sampling_section(project, platform)
     elif name in experiments:
         found = experiments[name]
     elif name in type(project.study).model_fields:

@@ -15,14 +15,15 @@ from linepose.estimation.optimise import Search, laplace_covariance, optimise
 from linepose.estimation.sampling import Chain
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
-from linepose.tables import flags, floats, texts, whole_numbers
+from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
 LAPLACE_SIGMA_COLUMNS: Final = tuple(f"laplace_{name}" for name in SIGMA_COLUMNS)
 OPTIMA: Final = pa.schema(
     [
         *texts("stage"),
         *whole_numbers("n_observations"),
-        *floats(*POSE_COLUMNS, *LAPLACE_SIGMA_COLUMNS, "neg_log_likelihood", "start_neg_log_likelihood"),
+        *floats(*POSE_COLUMNS, *LAPLACE_SIGMA_COLUMNS, "neg_log_likelihood"),
+        *optional_floats("start_neg_log_likelihood"),
         *floats("reduced_chi_square"),
         *whole_numbers("n_evaluations", "degrees_of_freedom"),
         *flags("converged"),
@@ -44,6 +45,7 @@ DIAGNOSTICS: Final = pa.schema(
             "neg_log_likelihood",
             "reduced_chi_square",
         ),
+        *optional_floats("pareto_shape", "least_eigenvalue", "disagreement_sigmas"),
         *texts("warning"),
     ]
 )
@@ -51,7 +53,8 @@ POSE: Final = pa.schema(
     [
         *texts("stage"),
         *whole_numbers("n_observations"),
-        *floats(*POSE_COLUMNS, *SIGMA_COLUMNS, "neg_log_likelihood"),
+        *floats(*POSE_COLUMNS, *SIGMA_COLUMNS),
+        *optional_floats("neg_log_likelihood"),
         *whole_numbers("n_evaluations"),
     ]
 )
@@ -67,8 +70,8 @@ def optimise_stages(
 ) -> pd.DataFrame:
     """The optimum of each stage from the start pose (6,), with the sigmas of the Laplace approximation.
 
-    Columns as in `OPTIMA`, and the noise model's own parameters and their sigmas. The reduced
-    chi-square is the noise model's chi-square over its degrees of freedom: near one where the sigmas are right.
+    Columns as in `OPTIMA`. The reduced chi-square is the likelihood's over its degrees of freedom: near one where the
+    sigmas are right.
     """
     rows = []
     for name, numbers in stages.items():
@@ -138,6 +141,9 @@ def diagnostics_table(optima: pd.DataFrame, diagnostics: Mapping[str, ChainDiagn
                     "laplace_sigma": optimum[laplace_sigma_columns([name])[0]],
                     "neg_log_likelihood": optimum["neg_log_likelihood"],
                     "reduced_chi_square": optimum["reduced_chi_square"],
+                    "pareto_shape": np.nan,
+                    "least_eigenvalue": np.nan,
+                    "disagreement_sigmas": np.nan,
                     "warning": chain.warning,
                 }
             )

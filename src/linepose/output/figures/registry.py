@@ -4,11 +4,9 @@ from typing import Final
 
 from linepose.output.figures import (
     basin,
-    consistency,
     corner_plot,
     identifiability,
     mapping,
-    noise_models,
     outlier_matrix,
     platform_sketch,
     repeatability,
@@ -18,7 +16,6 @@ from linepose.output.figures import (
     survey_plan,
     trace,
     uncertainty,
-    weights,
 )
 from linepose.output.figures.entry import FigureEntry
 
@@ -35,8 +32,5 @@ FIGURES: Final[tuple[FigureEntry, ...]] = (
     *trace.FIGURES,
     *residuals.FIGURES,
     *repeatability.FIGURES,
-    *noise_models.FIGURES,
-    *consistency.FIGURES,
-    *weights.FIGURES,
     *identifiability.FIGURES,
 )

@@ -10,9 +10,9 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from linepose.output.report.pictures import Picture, embedded
 from linepose.output.report.sections import SectionOnPage
+from linepose.pipeline.checks import Level
 from linepose.pipeline.pose_tables import PoseNumber
 from linepose.pipeline.summary import PlatformSummary
-from linepose.pipeline.verdict import Level
 
 _WORDS: Final = {Level.GOOD: "good", Level.CARE: "care", Level.BAD: "bad"}
 _SIGNS: Final = {Level.GOOD: "✓ passed", Level.CARE: "! look", Level.BAD: "✗ failed"}

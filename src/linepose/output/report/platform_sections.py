@@ -5,14 +5,12 @@ from typing import Final
 
 from linepose.output.report.clocks import clocks_section
 from linepose.output.report.data_or_prior import decided_section
-from linepose.output.report.noise_models import noise_models_section
 from linepose.output.report.sections import SectionOnPage
 from linepose.output.report.sensitivity import dependence_section
 from linepose.pipeline.calibration import Calibration
 
 _SECTIONS: Final[tuple[Callable[[Calibration], SectionOnPage | None], ...]] = (
     decided_section,
-    noise_models_section,
     dependence_section,
     clocks_section,
 )

@@ -8,9 +8,10 @@ from typing import Any, Final
 import numpy as np
 
 from linepose.errors import InputError
+from linepose.pipeline.checks import Check, Level
 from linepose.pipeline.pose_tables import PoseNumber
 from linepose.pipeline.summary import PlatformSummary
-from linepose.pipeline.verdict import Check, Level, Verdict
+from linepose.pipeline.verdict import Verdict
 
 SUMMARY: Final = "summary.json"
 PAGE: Final = "report.html"

@@ -3,7 +3,7 @@ import pytest
 from scipy.stats import genpareto, multivariate_normal
 
 from linepose.errors import EstimationError
-from linepose.estimation.importance import WeightedSamples, importance_samples, pareto_smoothed
+from linepose.paper.importance import WeightedSamples, importance_samples, pareto_smoothed
 
 MEAN = np.array([0.1, -0.2, 0.3, 0.0, 0.5, -0.4])
 FACTOR = np.tril(np.random.default_rng(4).normal(0, 0.4, (6, 6)), -1) + np.diag([1.0, 0.1, 2.0, 0.5, 0.01, 1.0])

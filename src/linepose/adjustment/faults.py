@@ -1,0 +1,56 @@
+"""What the errors of a view that the adjustment gave little weight look like: a clock, labels, or a jump."""
+
+from typing import Final
+
+import numpy as np
+
+from linepose.adjustment.reprojection import Reprojection
+from linepose.adjustment.result import Adjustment
+from linepose.arrays import Floats
+from linepose.survey.observations import Survey
+
+CLOCK: Final = "clock"
+LABEL: Final = "label"
+JUMP: Final = "jump"
+DOUBTFUL_WEIGHT: Final = 0.5  # of a view or a measurement: its errors are 1.4 times what the levels say
+_MOSTLY: Final = 0.8  # share of the squared errors that a cause explains
+_FEWEST: Final = 3  # measurements of a view that tell causes apart
+
+
+def view_faults(survey: Survey, found: Adjustment, errors: Reprojection) -> list[str]:
+    """One word a view (N,): `clock`, `label` or `jump`, empty for a view that is as good as the rest.
+
+    Some measurements far off while the others are good: labels. Errors that one time shift explains: a clock. Otherwise
+    the body's pose jumped or drifted within the view.
+    """
+    words = []
+    for view in range(survey.n_observations):
+        single = found.measurement_weight[view]
+        weight = np.nanmin([found.view_weight[view], _or_one(single)])
+        words.append(_word(errors, single, view) if weight < DOUBTFUL_WEIGHT else "")
+    return words
+
+
+def _or_one(weights: Floats) -> float:
+    return float(np.nanmin(weights)) if np.isfinite(weights).any() else 1.0
+
+
+def _word(errors: Reprojection, single: Floats, view: int) -> str:
+    seen = np.flatnonzero(np.isfinite(errors.error_px[view]))
+    if len(seen) < _FEWEST:
+        return JUMP
+    bad = single[seen] < DOUBTFUL_WEIGHT
+    if bad.any() and not bad.all() and bad.sum() <= len(seen) / 2:
+        return LABEL
+    error = errors.error_uv_px[view, seen]
+    total = float(np.sum(error**2))
+    shifted = total - float(np.sum((error - error.mean(axis=0)) ** 2))
+    if total > 0 and _along_motion(error) and shifted > _MOSTLY * total:
+        return CLOCK
+    return JUMP
+
+
+def _along_motion(error: Floats) -> bool:
+    """Whether the common error of a view (K, 2) is across the scan line, as a shift in time is."""
+    along, across = np.abs(error.mean(axis=0))
+    return bool(across > along)

@@ -1,0 +1,66 @@
+"""The checks that only an adjustment has: weights of views, curvature, draws of the levels."""
+
+from typing import Final
+
+from linepose.adjustment.curvature import TRUSTED_EIGENVALUE
+from linepose.adjustment.faults import CLOCK, JUMP, LABEL
+from linepose.adjustment.importance import TRUSTED_SHAPE
+from linepose.adjustment.result import FEWEST_EFFECTIVE_DRAWS
+from linepose.pipeline.checks import AdjustedEvidence, Check, Evidence, Level
+
+_MANY: Final = 3  # one view in so many may be far off
+_CAUSES: Final = {CLOCK: "its clock", LABEL: "labels", JUMP: "a jump of the navigation"}
+
+
+def doubtful_views(evidence: Evidence, adjusted: AdjustedEvidence) -> Check:
+    """Whether the adjustment had to give a view little weight."""
+    found = f"All {evidence.n_observations} observations count, each with its weight."
+    if evidence.influence is not None:
+        found += (
+            f" Observation {evidence.most_influential} has the most influence: without it the pose moves by "
+            f"{evidence.influence:.1f} sigmas."
+        )
+    if not adjusted.doubtful:
+        return Check("Weights", Level.GOOD, f"{found} None is far off.")
+    named = ", ".join(f"{one.observation} ({_CAUSES[one.fault]})" for one in adjusted.doubtful)
+    few = len(adjusted.doubtful) <= evidence.n_observations / _MANY
+    return Check(
+        "Weights",
+        Level.GOOD if few else Level.CARE,
+        f"{found} Far off, and of little weight: observation {named}.",
+        "" if few else "Look at these observations before the pose is relied on: more than a third are far off.",
+        "" if few else f"{len(adjusted.doubtful)} of {evidence.n_observations} observations are far off",
+    )
+
+
+def curvature(adjusted: AdjustedEvidence) -> Check:
+    """Whether the sigmas rest on a curvature that the data show."""
+    found = (
+        f"Along the direction that is known least, chi squared curves {adjusted.least_eigenvalue:.2f} of what the "
+        "normal equations say."
+    )
+    if adjusted.least_eigenvalue >= TRUSTED_EIGENVALUE:
+        return Check("Curvature", Level.GOOD, found)
+    return Check(
+        "Curvature",
+        Level.BAD,
+        f"{found} Below {TRUSTED_EIGENVALUE} the sigmas are not to be trusted.",
+        "Add observations from other sides and with other tilts.",
+        "the sigmas rest on a direction that is hardly known",
+    )
+
+
+def draws(adjusted: AdjustedEvidence) -> Check:
+    """Whether the draws of the levels are worth enough."""
+    found = (
+        f"The draws of the levels are worth {adjusted.effective_draws:.0f}, Pareto shape {adjusted.pareto_shape:.2f}."
+    )
+    if adjusted.effective_draws >= FEWEST_EFFECTIVE_DRAWS and adjusted.pareto_shape <= TRUSTED_SHAPE:
+        return Check("Draws of the levels", Level.GOOD, found)
+    return Check(
+        "Draws of the levels",
+        Level.CARE,
+        f"{found} Expected are {FEWEST_EFFECTIVE_DRAWS:.0f} or more, and a shape below {TRUSTED_SHAPE}.",
+        "Raise adjustment.n_draws in config/config.yaml and run again.",
+        "the draws of the levels are too few",
+    )

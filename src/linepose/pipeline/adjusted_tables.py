@@ -1,0 +1,238 @@
+"""An adjustment as the tables of a calibration: those that every noise model has, and what the errors were."""
+
+from typing import Final
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+
+from linepose.adjustment.levels import LEVEL_NAMES
+from linepose.adjustment.reprojection import Reprojection, reprojection
+from linepose.adjustment.result import Adjustment
+from linepose.adjustment.settings import AdjustmentSettings
+from linepose.arrays import Floats
+from linepose.estimation.adjustment_estimator import AdjustmentEstimator
+from linepose.estimation.diagnostics import split_r_hat
+from linepose.estimation.outliers import OUTLIERS
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS, point_rows
+from linepose.pipeline.stages import DIAGNOSTICS, LAPLACE_SIGMA_COLUMNS, OPTIMA, POSE
+from linepose.survey.hand_measured import HandMeasured
+from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS, Survey
+from linepose.tables import floats, optional_floats, texts, whole_numbers
+
+STAGE: Final = "inliers"
+CORRECTION_COLUMNS: Final = tuple(f"correction_{name}" for name in (*POSITION_COLUMNS, *EULER_COLUMNS))
+NORMALISED_COLUMNS: Final = ("normalised_along", "normalised_across")
+
+LEVELS: Final = pa.schema(
+    [
+        *texts("level"),
+        *floats("value"),
+        *optional_floats("low", "high"),
+        *floats("prior_median", "prior_low", "prior_high"),
+    ]
+)
+VIEWS: Final = pa.schema(
+    [*whole_numbers("observation"), *optional_floats("weight", *CORRECTION_COLUMNS), *texts("fault")]
+)
+MEASUREMENTS: Final = pa.schema(
+    [
+        *whole_numbers("observation", "point", "time_us"),
+        *floats(*CORRECTION_COLUMNS, "weight"),
+        *optional_floats(*NORMALISED_COLUMNS),
+    ]
+)
+STAGES: Final = {
+    "outliers": OUTLIERS,
+    "optima": OPTIMA,
+    "diagnostics": DIAGNOSTICS,
+    "pose": POSE,
+    "residuals": RESIDUALS,
+    "estimated_points": ESTIMATED_POINTS,
+}
+ADJUSTED: Final = {"levels": LEVELS, "adjusted_views": VIEWS, "adjusted_measurements": MEASUREMENTS}
+_INTERVAL: Final = 1.959963984540054  # sigmas, of 95 %
+
+
+def adjusted_tables(estimator: AdjustmentEstimator, seed: int) -> dict[str, pd.DataFrame]:
+    """Every table of a platform's calibration by the adjustment, by the name of the workflow's result.
+
+    No observation is removed: the one stage is called `inliers`, and weights say which views are far off.
+    """
+    survey, hand = estimator.survey, estimator.hand_measured
+    found = estimator.adjusted(seed=seed)
+    errors = reprojection(survey, estimator.camera, found, estimator.settings.line_period_s)
+    return {
+        "outliers": _outliers(survey, found, errors),
+        "optima": _optima(survey, found),
+        f"mcmc/{STAGE}": found.samples,
+        "diagnostics": _diagnostics(survey, found),
+        "pose": _poses(survey, found, hand),
+        "residuals": _residuals(survey, errors),
+        "estimated_points": point_rows(STAGE, found.points_m, found.point_covariance, survey.origin_m),
+        **error_tables(survey, found, errors, estimator.settings),
+    }
+
+
+def error_tables(
+    survey: Survey, found: Adjustment, errors: Reprojection, settings: AdjustmentSettings
+) -> dict[str, pd.DataFrame]:
+    """What the errors were: levels, and each view's and each measurement's corrections and weight."""
+    return {
+        "levels": level_table(found, settings),
+        "adjusted_views": view_table(survey, found, errors),
+        "adjusted_measurements": measurement_table(survey, found),
+    }
+
+
+def level_table(found: Adjustment, settings: AdjustmentSettings) -> pd.DataFrame:
+    """One row a level with what holds it with 95 %, before and after the data; columns as in `LEVELS`."""
+    median, log_sigma = np.asarray(settings.priors.median), np.asarray(settings.priors.log_sigma)
+    return pd.DataFrame(
+        {
+            "level": LEVEL_NAMES,
+            "value": np.asarray(found.levels),
+            "low": found.level_intervals[:, 0],
+            "high": found.level_intervals[:, 1],
+            "prior_median": median,
+            "prior_low": median * np.exp(-_INTERVAL * log_sigma),
+            "prior_high": median * np.exp(_INTERVAL * log_sigma),
+        }
+    )
+
+
+def view_table(survey: Survey, found: Adjustment, errors: Reprojection) -> pd.DataFrame:
+    """One row an observation: its weight, mean correction and, where it is far off, what its errors look like.
+
+    Columns as in `VIEWS`.
+    """
+    from linepose.adjustment.faults import view_faults
+
+    seen = np.any(np.isfinite(found.corrections[..., 0]), axis=1)
+    mean = np.full((survey.n_observations, 6), np.nan)
+    mean[seen] = np.nanmean(found.corrections[seen], axis=1)
+    return pd.DataFrame(
+        {
+            "observation": survey.number,
+            "weight": found.view_weight,
+            **dict(zip(CORRECTION_COLUMNS, mean.T, strict=True)),
+            "fault": view_faults(survey, found, errors),
+        }
+    )
+
+
+def measurement_table(survey: Survey, found: Adjustment) -> pd.DataFrame:
+    """One row a measurement: correction of its body pose, weight, normalised residual; as in `MEASUREMENTS`."""
+    row, point = np.nonzero(np.isfinite(found.measurement_weight))
+    return pd.DataFrame(
+        {
+            "observation": survey.number[row],
+            "point": point.astype(np.int64),
+            "time_us": survey.time_us[row, point],
+            **dict(zip(CORRECTION_COLUMNS, found.corrections[row, point].T, strict=True)),
+            "weight": found.measurement_weight[row, point],
+            **dict(zip(NORMALISED_COLUMNS, found.normalised[row, point].T, strict=True)),
+        }
+    )
+
+
+def _outliers(survey: Survey, found: Adjustment, errors: Reprojection) -> pd.DataFrame:
+    mean = np.array([np.nanmean(row) if np.isfinite(row).any() else 0.0 for row in errors.error_px])
+    return pd.DataFrame(
+        {
+            "n_observations": survey.n_observations,
+            "observation": survey.number,
+            "error_px": mean,
+            "removed": False,
+            "accepted": True,
+            **_objective(found),
+            **dict(zip(POSE_COLUMNS, found.pose, strict=True)),
+        }
+    )
+
+
+def _optima(survey: Survey, found: Adjustment) -> pd.DataFrame:
+    told = found.diagnostics
+    row = {
+        "stage": STAGE,
+        "n_observations": survey.n_observations,
+        **dict(zip(POSE_COLUMNS, found.pose, strict=True)),
+        **dict(zip(LAPLACE_SIGMA_COLUMNS, found.sigma, strict=True)),
+        **_objective(found),
+        "start_neg_log_likelihood": np.nan,
+        "reduced_chi_square": told.chi_squared / told.degrees_of_freedom,
+        "degrees_of_freedom": told.degrees_of_freedom,
+        "converged": told.converged,
+    }
+    return pd.DataFrame([row])
+
+
+def _objective(found: Adjustment) -> dict[str, object]:
+    """Half of chi squared, which decides on the pose, and the passes that it took."""
+    told = found.diagnostics
+    return {"neg_log_likelihood": 0.5 * told.chi_squared, "n_evaluations": told.n_passes}
+
+
+def _diagnostics(survey: Survey, found: Adjustment) -> pd.DataFrame:
+    told, poses = found.diagnostics, found.samples[list(POSE_COLUMNS)].to_numpy()
+    half = len(poses) // 2
+    r_hat = split_r_hat(poses[: 2 * half].reshape(2, half, -1).swapaxes(0, 1))
+    return pd.DataFrame(
+        {
+            "stage": STAGE,
+            "n_observations": survey.n_observations,
+            "parameter": POSE_COLUMNS,
+            "acceptance_fraction": 1.0,
+            "autocorrelation_time": 1.0,
+            "effective_sample_size": told.effective_draws,
+            "split_r_hat": r_hat,
+            "sampled_sigma": poses.std(axis=0, ddof=1),
+            "laplace_sigma": found.sigma,
+            "neg_log_likelihood": 0.5 * told.chi_squared,
+            "reduced_chi_square": told.chi_squared / told.degrees_of_freedom,
+            "pareto_shape": told.pareto_shape,
+            "least_eigenvalue": told.least_eigenvalue,
+            "disagreement_sigmas": told.disagreement_sigmas,
+            "warning": "; ".join(told.warnings),
+        }
+    )
+
+
+def _poses(survey: Survey, found: Adjustment, hand: HandMeasured) -> pd.DataFrame:
+    rows: list[tuple[str, Floats, Floats, dict[str, object]]] = [
+        (
+            "hand_measured",
+            hand.pose,
+            np.sqrt(np.diag(hand.covariance)),
+            {"neg_log_likelihood": np.nan, "n_evaluations": 0},
+        ),
+        (STAGE, found.pose, found.sigma, _objective(found)),
+    ]
+    return pd.DataFrame(
+        [
+            {
+                "stage": stage,
+                "n_observations": survey.n_observations,
+                **dict(zip(POSE_COLUMNS, pose, strict=True)),
+                **dict(zip(SIGMA_COLUMNS, sigma, strict=True)),
+                **rest,
+            }
+            for stage, pose, sigma, rest in rows
+        ]
+    )
+
+
+def _residuals(survey: Survey, errors: Reprojection) -> pd.DataFrame:
+    row, point = np.nonzero(np.isfinite(errors.error_px))
+    return pd.DataFrame(
+        {
+            "stage": STAGE,
+            "observation": survey.number[row],
+            "point": point.astype(np.int64),
+            "error_px": errors.error_px[row, point],
+            "error_u_px": errors.error_uv_px[row, point, 0],
+            "error_v_px": errors.error_uv_px[row, point, 1],
+            "sigma_px": errors.sigma_px[row, point],
+        }
+    )
