@@ -12,12 +12,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from linepose.likelihood.shared import SharedLikelihood
 
 from linepose.config.platform import load_platform
 from linepose.estimation.optimise import optimise
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import pose_difference
-from linepose.likelihood.shared import SharedLikelihood
 from linepose.simulation.settings import GroundSettings, PassSettings, SimulationSettings, WaveSettings
 from linepose.simulation.survey import simulate_survey, without_faults
 

@@ -4,15 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from linepose.experiments.consistency import CONSISTENCY, CONSISTENCY_SUMMARY, summarise_consistency
+from linepose.experiments.noise_models import EXTRA_PARAMETERS, IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
 
 from linepose.config.platform import Platform
 from linepose.estimation.outliers import OUTLIERS
 from linepose.experiments.basin import BASIN, BASIN_SUMMARY, START_COLUMNS, Region, summarise
 from linepose.experiments.clock_offset import CLOCK_OFFSET, CORRELATION_COLUMNS
-from linepose.experiments.consistency import CONSISTENCY, CONSISTENCY_SUMMARY, summarise_consistency
 from linepose.experiments.leave_one_out import LEAVE_ONE_OUT
 from linepose.experiments.mapping import MAPPING, MAPPING_SUMMARY, PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
-from linepose.experiments.noise_models import EXTRA_PARAMETERS, IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
 from linepose.experiments.prior import PRIOR_TABLE
 from linepose.experiments.splits import SPLITS
 from linepose.experiments.uncertainty import UNCERTAINTY

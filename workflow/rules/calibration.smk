@@ -20,14 +20,15 @@ rule compile:
         "../../scripts/compile.py"
 
 
-rule adjust: # all at once: no observation is removed, and the posterior needs no chain
+rule adjust:  # all at once: no observation is removed, and the posterior needs no chain
     input:
         observations="results/{platform}/observations.parquet",
         compiled=compiled,
         lost=remade_if_lost("results/{platform}/mcmc"),
     output:
         **{
-            name: f"results/{{platform}}/{name}.parquet" for name in (*STAGES, *ADJUSTED)
+            name: f"results/{{platform}}/{name}.parquet"
+            for name in (*STAGES, *ADJUSTED)
         },
         samples=directory("results/{platform}/mcmc"),
         files="results/{platform}/mcmc_files.txt",

@@ -192,7 +192,9 @@ def experiment_inputs(experiment):
             files[f"other_{need}"] = result_of_compared(experiment, need)
     if experiment.log:
         files["record"] = record
-    if "observations" in experiment.needs:
+    if experiment.noise_model:
+        files["compiled"] = f"results/compiled/{experiment.noise_model}.txt"
+    elif "observations" in experiment.needs:
         files["compiled"] = compiled
     return files
 

@@ -22,6 +22,7 @@ from linepose.geometry import rotations
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.survey.observations import Survey
 
+CLOCK_OFFSET_COLUMN: Final = "clock_offset_s"  # of the samples, where it is estimated
 _OPEN_SHARE: Final = 0.9  # of a prior's sigma, above which the data have said nothing
 _INTERVAL: Final = (0.025, 0.975)
 
@@ -104,6 +105,7 @@ def _samples(state: State, spread: Mixture, settings: AdjustmentSettings) -> pd.
             "walker": np.arange(len(steps), dtype=np.int64),
             "step": np.zeros(len(steps), dtype=np.int64),
             **{name: poses[:, i] for i, name in enumerate(POSE_COLUMNS)},
+            **({CLOCK_OFFSET_COLUMN: state.clock_offset_s + steps[:, 0]} if steps.shape[1] > N_POSE else {}),
             "log_likelihood": -spread.negative_log_density[component],
         }
     )

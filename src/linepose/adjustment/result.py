@@ -60,14 +60,15 @@ class Adjustment:
 
     pose (6,): at the mode, with a rotation vector; covariance (6, 6): the posterior's, of the pose's parameters;
     principal_point_px, focal_length_m; points_m (M, 3): from the survey's origin, NaN for a point left out;
-    point_covariance (M, 3, 3): at the levels' mode, NaN where it is not known; levels: at their mode; level_intervals (7, 2): what holds each with 95 %, NaN for one that was not estimated; corrections (N,
-    M, 6): of the reported body poses (m, rad); constants (N, 6), drifts (N, M, 6): of the process, in its own units;
-    view_weight (N,), measurement_weight (N, M): 1 is as good as the levels say, towards 0 is bad; normalised (N, M, 2):
-    whitened residuals along and across the line, each a standard normal number if the model is right; samples:
-    independent draws of the pose in the columns of a chain (walker, step, pose, log_likelihood); clock_offset_s: what
-    is added to the scan's time stamps to get the navigation's time, positive if the stamps are too early, and
-    clock_offset_sigma_s: the posterior's, both NaN where it was not estimated. Everything of a measurement is NaN where
-    there is none.
+    point_covariance (M, 3, 3): at the levels' mode, NaN where it is not known; levels: at their mode;
+    level_intervals (7, 2): what holds each with 95 %, NaN for one that was not estimated; corrections (N, M, 6): of the
+    reported body poses (m, rad); constants (N, 6), drifts (N, M, 6): of the process, in its own units; view_weight
+    (N,), measurement_weight (N, M): 1 is as good as the levels say, towards 0 is bad; normalised (N, M, 2): whitened
+    residuals along and across the line, each a standard normal number if the model is right; samples: independent draws
+    of the pose, and of the clock offset if it is estimated, in the columns of a chain (walker, step, pose,
+    log_likelihood); clock_offset_s: what is added to the scan's time stamps to get the navigation's time, positive if
+    the stamps are too early, and clock_offset_sigma_s: the posterior's, both NaN where it was not estimated.
+    Everything of a measurement is NaN where there is none.
     """
 
     pose: Floats

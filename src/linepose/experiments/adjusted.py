@@ -13,6 +13,7 @@ from pydantic import Field, NonNegativeInt, PositiveInt
 from linepose.adjustment.levels import LEVEL_NAMES
 from linepose.adjustment.reprojection import reprojection
 from linepose.estimation.adjustment_estimator import AdjustmentEstimator, adjustment_estimator
+from linepose.estimation.noise_models import ADJUSTMENT as ADJUSTMENT_MODEL
 from linepose.experiments.estimate import estimate_fields, estimate_row
 from linepose.experiments.experiment import Experiment, Section
 from linepose.experiments.inputs import Inputs, log_rows
@@ -144,5 +145,6 @@ EXPERIMENT: Final = Experiment(
     needs=("observations", "outliers"),
     compares=True,
     removal=True,
+    noise_model=ADJUSTMENT_MODEL.name,
     cores=None,
 )

@@ -5,7 +5,7 @@ direction or speed tell them apart. So the estimate comes with its correlations,
 """
 
 import logging
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -14,42 +14,35 @@ import pyarrow as pa
 from numpy.typing import ArrayLike
 from pydantic import Field, PositiveFloat
 
+from linepose.adjustment.assemble import CLOCK_OFFSET_COLUMN
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
+from linepose.estimation.adjustment_estimator import AdjustmentEstimator
+from linepose.estimation.estimator import Estimator
 from linepose.estimation.identifiability import TURN_NAMES, in_body_axes
-from linepose.estimation.noise_models import likelihood_factory
+from linepose.estimation.likelihood_estimator import LikelihoodEstimator
+from linepose.estimation.noise_models import likelihood_of
 from linepose.estimation.optimise import Search, laplace_covariance, optimise
-from linepose.estimation.sampling import IndependenceSettings, SamplingSettings, sample, stage_seed
+from linepose.estimation.sampling import SamplingSettings, sample, stage_seed
+from linepose.experiments.clock_offset_evidence import ClockOffsetEvidence
 from linepose.experiments.estimate import observation_list
 from linepose.experiments.experiment import ESTIMATE, Experiment, Section
 from linepose.experiments.inputs import Inputs
 from linepose.experiments.jackknife import jackknife_sigma
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.likelihood.clock_offset import ClockOffsetLikelihood, with_clock_offset
+from linepose.likelihood.base import Likelihood
+from linepose.likelihood.clock_offset import OFFSET_NAME, ClockOffsetLikelihood, with_clock_offset
 from linepose.pipeline.load import read_log
-from linepose.pipeline.stages import SAMPLES, sample_table
+from linepose.pipeline.stages import OPTIMA, SAMPLES, sample_table
 from linepose.settings import Settings
+from linepose.survey.observations import Survey
 from linepose.tables import flags, floats, optional_floats, texts, whole_numbers, with_parameters
 
 _logger = logging.getLogger(__name__)
 
 CORRELATION_COLUMNS: Final = tuple(f"correlation_{name.rsplit('_', 1)[0]}" for name in (*POSE_COLUMNS, *TURN_NAMES))
-IDENTIFIABLE_SHRINKAGE: Final = 0.75  # of the shrinkage: the sigma is half of what it was before any data
-MOST_COMMON: Final = 0.98  # correlation with the whole pose, where a sigma is five times what it is with the pose known
-LINKED: Final = 0.9  # correlation with the pose, from which it is the pose that hides the offset, and not the noise
-NOTABLE: Final = 3.0  # sigmas from zero
 _INSIDE: Final = 0.75  # of the largest offset, five times the walkers' scatter from it
-_LARGEST: Final = 0.9  # of the largest offset, where the search has run into its end
-_WORDS: Final = {
-    "r_x": "forward lever arm",
-    "r_y": "sideways lever arm",
-    "r_z": "height",
-    "roll": "roll",
-    "pitch": "pitch",
-    "yaw": "yaw",
-}
-
 CLOCK_OFFSET: Final = pa.schema(
     [
         *whole_numbers("n_observations"),
@@ -66,7 +59,7 @@ CLOCK_OFFSET: Final = pa.schema(
 
 
 class ClockOffsetSettings(Settings):
-    """The camera's clock against the navigation's, one parameter beside the pose; needs a raw navigation log."""
+    """The camera's clock against the navigation's, one parameter beside the pose."""
 
     maximum_s: PositiveFloat = Field(0.1, description="The clocks differ by no more than this (s).")
 
@@ -75,7 +68,7 @@ SECTION: Final = Section(
     "clock_offset",
     ClockOffsetSettings,
     None,
-    "Clock offset, of platforms with scans and a raw navigation log only.",
+    "Clock offset; under a noise model with a likelihood it needs scans and a raw navigation log.",
 )
 
 
@@ -94,7 +87,7 @@ def estimate_clock_offset(
     start: ArrayLike,
     seed: int,
     search: Search | None = None,
-    settings: SamplingSettings | IndependenceSettings | None = None,
+    settings: SamplingSettings | None = None,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The offset and the pose together from a start pose (6,): a table of one row, and the samples behind its sigmas.
 
@@ -116,31 +109,84 @@ def estimate_clock_offset(
     names, covariance = likelihood.parameter_names, chain.covariance()
     offset_s, sampled_sigma_s = float(optimum.parameters[-1]), float(chain.sigma()[-1])
     sigma_s = float(np.nanmax([sampled_sigma_s, view_sigma]))
-    correlation = correlations(optimum.parameters, covariance, names)
-    shrinkage = 1 - sigma_s**2 / (likelihood.maximum_s**2 / 3)
-    pose = optimum.parameters[:N_PARAMETERS]
+    found = _Found(
+        np.append(optimum.parameters[:N_PARAMETERS], offset_s),
+        covariance,
+        sigma_s,
+        sampled_sigma_s,
+        with_pose,
+        optimum.neg_log_likelihood,
+    )
+    curved = {"laplace_sigma_s": laplace_sigma, "jackknife_sigma_s": view_sigma}
+    return _table(found, curved, likelihood.survey.number, likelihood.maximum_s, without), sample_table(chain, names)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Pose and offset (7,) with their covariance (7, 7), the offset's sigmas, and its correlation with the pose."""
+
+    parameters: Floats
+    covariance: Floats
+    sigma_s: float
+    sampled_sigma_s: float
+    correlation_pose: float
+    neg_log_likelihood: float
+
+
+def adjusted_clock_offset(
+    estimator: AdjustmentEstimator, without: PoseWithoutOffset, maximum_s: float, seed: int
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The same as one parameter more of the adjustment, whose prior has `maximum_s` at two sigmas from zero.
+
+    The bodies move along the rates of their own views, so that no raw log is needed.
+    """
+    settings = estimator.settings.replaced(clock_offset_sigma_s=maximum_s / 2)
+    adjusted = replace(estimator, settings=settings).adjusted(seed=seed)
+    drawn = adjusted.samples[[*POSE_COLUMNS, CLOCK_OFFSET_COLUMN]].to_numpy()
+    covariance = np.cov(drawn.T)
+    sigma_s = adjusted.clock_offset_sigma_s
+    found = _Found(
+        np.append(adjusted.pose, adjusted.clock_offset_s),
+        covariance,
+        sigma_s,
+        float(np.sqrt(covariance[-1, -1])),
+        correlation_with_all(covariance),
+        0.5 * adjusted.diagnostics.chi_squared,
+    )
+    unknown = dict.fromkeys(("laplace_sigma_s", "jackknife_sigma_s"), np.nan)
+    return _table(found, unknown, estimator.survey.number, maximum_s, without), adjusted.samples
+
+
+def _table(
+    found: _Found, curved: dict[str, float], numbers: ArrayLike, maximum_s: float, without: PoseWithoutOffset
+) -> pd.DataFrame:
+    pose, offset_s = found.parameters[:N_PARAMETERS], float(found.parameters[-1])
+    names = (*POSE_COLUMNS, OFFSET_NAME)
+    correlation = correlations(found.parameters, found.covariance, names)
+    shrinkage = 1 - found.sigma_s**2 / (maximum_s**2 / 3)
     moved = float(mahalanobis_distance(pose, without.pose, without.covariance))
-    evidence = ClockOffsetEvidence(offset_s, sigma_s, likelihood.maximum_s, shrinkage, with_pose, correlation, moved)
+    evidence = ClockOffsetEvidence(
+        offset_s, found.sigma_s, maximum_s, shrinkage, found.correlation_pose, correlation, moved
+    )
     row = {
-        "n_observations": likelihood.survey.n_observations,
-        "observations": observation_list(likelihood.survey.number),
+        "n_observations": len(np.asarray(numbers)),
+        "observations": observation_list(numbers),
         "offset_s": offset_s,
-        "sigma_s": sigma_s,
-        "sampled_sigma_s": sampled_sigma_s,
-        "laplace_sigma_s": laplace_sigma,
-        "jackknife_sigma_s": view_sigma,
-        "maximum_s": likelihood.maximum_s,
+        "sigma_s": found.sigma_s,
+        "sampled_sigma_s": found.sampled_sigma_s,
+        **curved,
+        "maximum_s": maximum_s,
         "shrinkage": shrinkage,
-        "correlation_pose": with_pose,
+        "correlation_pose": found.correlation_pose,
         **correlation,
-        **_pose("", pose, np.sqrt(np.diag(covariance)[:N_PARAMETERS]), optimum.neg_log_likelihood),
+        **_pose("", pose, np.sqrt(np.diag(found.covariance)[:N_PARAMETERS]), found.neg_log_likelihood),
         **_pose("_without", without.pose, np.sqrt(np.diag(without.covariance)), without.neg_log_likelihood),
         "mahalanobis": moved,
         "identifiable": evidence.is_identifiable(),
         "verdict": evidence.verdict(),
         "advice": evidence.advice(),
     }
-    return pd.DataFrame([row]), sample_table(chain, names)
+    return pd.DataFrame([row])
 
 
 def correlations(parameters: ArrayLike, covariance: ArrayLike, names: tuple[str, ...]) -> dict[str, float]:
@@ -162,76 +208,6 @@ def correlation_with_all(covariance: ArrayLike) -> float:
     return float(np.sqrt(np.clip(1 - 1 / inverse[-1, -1], 0.0, 1.0)))
 
 
-@dataclass(frozen=True)
-class ClockOffsetEvidence:
-    """What is known of the offset, and how to say it."""
-
-    offset_s: float
-    sigma_s: float
-    maximum_s: float
-    shrinkage: float
-    correlation_pose: float
-    correlation: dict[str, float]
-    mahalanobis: float
-
-    def is_identifiable(self) -> bool:
-        """Whether the data tell the offset from the pose."""
-        inside = abs(self.offset_s) < _LARGEST * self.maximum_s
-        return self.shrinkage >= IDENTIFIABLE_SHRINKAGE and self.correlation_pose < MOST_COMMON and inside
-
-    def verdict(self) -> str:
-        """One or two sentences: what the offset is, or why it is not known."""
-        found = f"{1e3 * self.offset_s:.1f} ± {1e3 * self.sigma_s:.1f} ms"
-        if not self.is_identifiable():
-            if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= IDENTIFIABLE_SHRINKAGE:
-                return f"The clock offset is at the end of its range: {found} of ±{1e3 * self.maximum_s:g} ms."
-            if self.correlation_pose < LINKED:
-                return (
-                    f"The data do not tell the clock offset: {found}, where ±{1e3 * self.maximum_s:g} ms were allowed."
-                )
-            return (
-                f"The clock offset cannot be told from the pose: {found}, where ±{1e3 * self.maximum_s:g} ms were "
-                f"allowed; it goes with the {self._partner()}, correlation {self._correlation():+.2f}."
-            )
-        if abs(self.offset_s) < NOTABLE * self.sigma_s:
-            return f"No clock offset shows: {found} is less than {NOTABLE:g} sigmas."
-        which = "behind" if self.offset_s > 0 else "ahead of"
-        return (
-            f"The camera's clock is {which} the navigation's: the offset is {found}. With it the pose moves by "
-            f"{self.mahalanobis:.1f} sigmas."
-        )
-
-    def advice(self) -> str:
-        """What to do; empty where there is nothing to do."""
-        if not self.is_identifiable():
-            if abs(self.offset_s) >= _LARGEST * self.maximum_s and self.shrinkage >= IDENTIFIABLE_SHRINKAGE:
-                return "Raise experiments.clock_offset.maximum_s, and check in which time scale each clock runs."
-            if self.correlation_pose < LINKED:
-                return (
-                    "Take the pose without the offset. Faster passes, more of them, or better navigation would tell it."
-                )
-            return (
-                "Take the pose without the offset, and add passes in the other direction and at other speeds: they "
-                "move the view the other way for the same offset."
-            )
-        if abs(self.offset_s) < NOTABLE * self.sigma_s:
-            return ""
-        verb = "Add" if self.offset_s > 0 else "Subtract"
-        shift = abs(round(1e6 * self.offset_s))
-        preposition = "to" if self.offset_s > 0 else "from"
-        return f"{verb} {shift} us {preposition} the camera's time stamps and run again, or mend its clock."
-
-    def _strongest(self) -> str:
-        named = [f"correlation_{name}" for name in _WORDS]
-        return max(named, key=lambda name: abs(self.correlation[name]))
-
-    def _partner(self) -> str:
-        return _WORDS[self._strongest().removeprefix("correlation_")]
-
-    def _correlation(self) -> float:
-        return self.correlation[self._strongest()]
-
-
 def _pose(suffix: str, pose: Floats, sigma: Floats, neg_log_likelihood: float) -> dict[str, float]:
     columns = [f"{name}{suffix}" for name in (*POSE_COLUMNS, *SIGMA_COLUMNS)]
     return {
@@ -241,16 +217,31 @@ def _pose(suffix: str, pose: Floats, sigma: Floats, neg_log_likelihood: float) -
 
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
-    platform, accepted, reference = inputs.platform, inputs.data.accepted, inputs.reference
-    without = PoseWithoutOffset(reference.pose, reference.covariance, -accepted.log_likelihood(reference.parameters))
-    survey, start = accepted.survey, platform.start_pose()
-    model = likelihood_factory(platform.noise_model, survey, platform.intrinsics(), start, platform.pose_prior())
-    raw_log = read_log(platform, inputs.folder)
-    likelihood = with_clock_offset(survey, raw_log, inputs.required(SECTION).maximum_s, model)
-    seed = stage_seed(inputs.seed, survey.n_observations, 1)
-    table, samples = estimate_clock_offset(likelihood, without, start, seed, inputs.search, inputs.sampling())
+    accepted, reference = inputs.data.accepted, inputs.reference
+    optimum = inputs.table("optima", OPTIMA).set_index("stage").loc["inliers"]
+    without = PoseWithoutOffset(reference.pose, reference.covariance, float(optimum["neg_log_likelihood"]))
+    maximum_s = inputs.required(SECTION).maximum_s
+    if isinstance(accepted, AdjustmentEstimator):
+        table, samples = adjusted_clock_offset(accepted, without, maximum_s, inputs.seed)
+    else:
+        table, samples = _of_likelihood(inputs, accepted, without, maximum_s)
     _logger.info("%s", table["verdict"].iloc[0])
     return {"clock_offset": table, "clock_offset_samples": samples}
+
+
+def _of_likelihood(
+    inputs: Inputs, accepted: Estimator, without: PoseWithoutOffset, maximum_s: float
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    assert isinstance(accepted, LikelihoodEstimator)
+    platform, survey = inputs.platform, accepted.survey
+
+    def model(moved: Survey) -> Likelihood:
+        return likelihood_of(platform.noise_model, moved, platform.intrinsics(), platform.pose_prior())
+
+    likelihood = with_clock_offset(survey, read_log(platform, inputs.folder), maximum_s, model)
+    seed = stage_seed(inputs.seed, survey.n_observations, 1)
+    start = platform.start_pose()
+    return estimate_clock_offset(likelihood, without, start, seed, accepted.search, accepted.sampling)
 
 
 def _samples_schema(table: pd.DataFrame) -> pa.Schema:
@@ -264,7 +255,6 @@ EXPERIMENT: Final = Experiment(
     run=_run,
     section=SECTION,
     needs=ESTIMATE,
-    study=("seed", "search", "own_sampling"),
     log=True,
     cores=2,
 )

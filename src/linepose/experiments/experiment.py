@@ -72,8 +72,9 @@ class Experiment:
     `needs` names results of the platform: ones of `pipeline` by their rule inputs, ones of other experiments by file.
     `study` names the keys of config.yaml that it takes. An experiment that `compares` has a section with a list
     `platforms`: their observations and outliers are read too. `log`: it needs the raw navigation log. `truth`: it is
-    run for simulated platforms only. `removal`: for those only whose noise model removes observations. `cores`: how
-    many it can use; None for all there are, in batches that a killed run need not make again.
+    run for simulated platforms only. `removal`: for those only whose noise model removes observations. `noise_model`:
+    the one that it evaluates, by name; the platform's own if None. `cores`: how many it can use; None for all there
+    are, in batches that a killed run need not make again.
     """
 
     name: str
@@ -89,6 +90,7 @@ class Experiment:
     log: bool = False
     truth: bool = False
     removal: bool = False
+    noise_model: str | None = None
     cores: int | None = 1
 
     @property

@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from linepose.config.platform import Platform
 from linepose.errors import InputError
+from linepose.estimation.noise_models import noise_model
 from linepose.experiments import (
     adjusted,
     basin,
@@ -84,7 +85,7 @@ def compared_platforms(platform: Platform, file: str) -> list[str]:
 
 def _missing_logs(platform: Platform, file: str) -> list[InputError]:
     """Experiments that are wanted and need a raw navigation log, of a platform whose views hold body poses."""
-    if platform.source.kind == "scans":
+    if platform.source.kind == "scans" or not noise_model(platform.noise_model).removes_outliers:
         return []
     found, expected = "an experiment that needs a raw navigation log", "a source of kind scans, which has one"
     return [

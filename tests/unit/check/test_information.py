@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from linepose.check.information import published_covariance, shared_covariance
 
 from linepose.check.hand_measured import expected_error_px, hand_findings
-from linepose.check.information import published_covariance, shared_covariance
 from linepose.check.motions import best_motions, motions
 from linepose.check.prediction import predict
 from linepose.check.replay import crossing, in_camera, replayed

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
+from linepose.likelihood.shared import SHARED_PARAMETERS
 
 from linepose.errors import EstimationError, InputError
 from linepose.estimation.identifiability import identifiability, in_body_axes, in_words
 from linepose.geometry import rotations
-from linepose.likelihood.shared import SHARED_PARAMETERS
 
 NAMES = ("r_z_m", "roll_rad", "focal_length_m")
 

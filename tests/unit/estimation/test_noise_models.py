@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from linepose.likelihood.shared import SharedLikelihood
 from pydantic import TypeAdapter
 
 from linepose.config.study import Study
 from linepose.errors import InputError, LineposeError
 from linepose.estimation.noise_models import DEFAULT, NOISE_MODELS, NoiseModelName, likelihood_of, noise_model
-from linepose.likelihood.shared import SharedLikelihood
 from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey, without
 
 ROOT = Path(__file__).parents[3]

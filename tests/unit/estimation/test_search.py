@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from linepose.likelihood.robust import RobustSharedLikelihood
+from linepose.likelihood.shared import SharedLikelihood
 from scipy.optimize import minimize
 
 from linepose.errors import EstimationError
 from linepose.estimation.optimise import Search, bounded, laplace_covariance, minimise, optimise
-from linepose.likelihood.robust import RobustSharedLikelihood
-from linepose.likelihood.shared import SharedLikelihood
 from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey
 
 START = POSE + np.array([0.05, -0.05, 0.04, 0.03, -0.02, 0.02])

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from linepose.likelihood.shared import SHARED_PARAMETERS
 
 from linepose.config.platform import Platform
 from linepose.experiments.prior import data_weight, prior_table
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.prior import pose_prior
-from linepose.likelihood.shared import SHARED_PARAMETERS
 from unit import made_up
 
 CENTRE = np.array([0.2, 0.0, -0.8, -0.76, 0.76, -1.43])
