@@ -31,27 +31,48 @@ def surveys() -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def test_a_panel_for_each_platform_and_regime(surveys):
-    figure = figures.coverage(coverage_curve(surveys, stated_probabilities()))
+def two_platforms(surveys):
+    return pd.concat([surveys, surveys.assign(platform="q-sim")])
+
+
+def test_a_panel_for_each_regime_and_a_curve_for_each_platform_and_model(surveys):
+    figure = figures.coverage(coverage_curve(two_platforms(surveys), stated_probabilities()))
     assert [axes.get_title() for axes in figure.axes] == ["white", "shared"]
-    assert all(len(axes.lines) == 3 for axes in figure.axes)  # the diagonal and two models
+    for axes in figure.axes:
+        curves = {(line.get_color(), line.get_linestyle()) for line in axes.lines[1:]}  # the first is the diagonal
+        assert len(curves) == len(axes.lines) - 1 == 4
 
 
-def test_cell_of_failures_has_no_bar_and_no_ratio(surveys):
+def points(panel):
+    """Row of each marker, and what it stands at."""
+    return [(line.get_ydata()[0], line.get_xdata()[0]) for line in panel.lines if line.get_linestyle() == "None"]
+
+
+def test_cell_of_failures_has_no_mark(surveys):
+    summary = coverage_summary(two_platforms(surveys), POOLS)
+    for panel, column, scale in zip(
+        figures.errors(summary).axes, ("rmse_position_m", "rmse_turn_rad"), (1.0, np.degrees(1.0)), strict=True
+    ):
+        cells = summary[(summary["platform"] != "all") & summary[column].notna()]
+        expected = [(("white", "shared").index(row["regime"]), scale * row[column]) for _, row in cells.iterrows()]
+        assert points(panel) == expected
+        assert len(expected) == 6
+
+
+def test_ratios_stand_in_their_row_and_those_beyond_the_axis_as_numbers(surveys):
     summary = coverage_summary(surveys, POOLS)
-    figure = figures.errors(summary)
-    assert sum(len(container) for container in figure.axes[0].containers) == 3
+    summary.loc[summary["noise_model"] == "published", "ratio"] *= 4.0
     (panel,) = figures.ratios(summary).axes
-    points = {(line.get_xdata()[0], line.get_ydata()[0]) for line in panel.lines if line.get_marker() == "o"}
-    assert {row for _, row in points} == {0, 1}
-    assert len(points) == 3
-    assert {value for value, _ in points} == set(summary[summary["platform"] == "p-sim"]["ratio"].dropna())
+    own = summary[(summary["platform"] == "p-sim") & (summary["noise_model"] == "adjustment")]
+    assert points(panel) == list(enumerate(own["ratio"]))
+    beyond = summary[(summary["regime"] == "shared") & (summary["noise_model"] == "published")]["ratio"].item()
+    assert [text.get_text() for text in panel.texts] == [f"{beyond:.1f}"]
 
 
 def test_pools_have_no_place_among_the_platforms(surveys):
     summary = coverage_summary(surveys, POOLS)
     assert [axes.get_title() for axes in figures.ratios(summary).axes] == ["p-sim"]
-    assert len(figures.errors(summary).axes) == 2
+    assert [label.get_text() for label in figures.errors(summary).axes[0].get_yticklabels()] == ["white", "shared"]
 
 
 def test_table_has_a_row_a_cell_with_intervals_and_one_a_pool(surveys):
@@ -74,5 +95,5 @@ def test_many_regimes_go_into_rows_of_four(surveys):
 
 
 def test_long_names_of_regimes_take_two_rows(surveys):
-    figure = figures.coverage(coverage_curve(surveys.assign(regime="gauss-markov-60"), stated_probabilities()))
-    assert figure.axes[0].get_title() == "gauss markov\n60"
+    figure = figures.coverage(coverage_curve(surveys.assign(regime="hand-measured-white"), stated_probabilities()))
+    assert figure.axes[0].get_title() == "hand measured\nwhite"
