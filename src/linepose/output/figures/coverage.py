@@ -57,7 +57,8 @@ def coverage(curve: pd.DataFrame) -> Figure:
 def ratios(summary: pd.DataFrame) -> Figure:
     """Errors in stated sigmas, a panel a platform and a row a regime, with where 95 % of right ones lie.
 
-    `summary` as in `COVERAGE_SUMMARY`; right ones as if the six errors of a survey were independent. Ratios beyond the axis are written at its end.
+    `summary` as in `COVERAGE_SUMMARY`; right ones as if the six errors of a survey were independent. Ratios beyond the
+    axis are written at its end.
     """
     rows = _of_platforms(summary, "ratio")
     platforms, regimes = _names(rows, "platform"), _names(rows, "regime")
