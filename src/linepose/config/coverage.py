@@ -1,9 +1,10 @@
 """What config.yaml says of the coverage study."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
+from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, noise_model
 from linepose.settings import Settings
 from linepose.simulation.noise_levels import NoiseLevels
 
@@ -18,14 +19,15 @@ class RegimeSection(NoiseLevels):
     hand_measured_prior: bool = Field(
         False, description="Draw the hand measurement from its prior about the truth for each survey, and count it."
     )
-    noise_models: list[Literal["adjustment", "published"]] = Field(
-        ["adjustment"], min_length=1, description="The noise models that estimate."
+    noise_models: list[NoiseModelName] = Field(
+        [DEFAULT.name], min_length=1, description=f"The noise models that estimate. {MEANINGS}"
     )
 
     @model_validator(mode="after")
-    def _prior_of_the_adjustment(self) -> Self:
-        if self.hand_measured_prior and self.noise_models != ["adjustment"]:
-            raise ValueError("hand_measured_prior counts in the adjustment alone: noise_models: [adjustment]")
+    def _prior_counts(self) -> Self:
+        without = [name for name in self.noise_models if noise_model(name).removes_outliers]
+        if self.hand_measured_prior and without:
+            raise ValueError(f"hand_measured_prior does not count under {', '.join(without)}; leave that out")
         return self
 
 

@@ -15,8 +15,9 @@ import pyarrow as pa
 
 from linepose.adjustment.settings import default_hand_covariance
 from linepose.arrays import Floats
-from linepose.errors import InputError, LineposeError
-from linepose.experiments.coverage_estimates import JUDGES, Start
+from linepose.errors import LineposeError
+from linepose.estimation.noise_models import noise_model
+from linepose.experiments.coverage_estimates import Start, judged_estimate
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix
@@ -66,8 +67,7 @@ class Cell:
     hand_measured_prior: bool = False
 
     def __post_init__(self) -> None:
-        if self.noise_model not in JUDGES:
-            raise InputError("noise model", repr(self.noise_model), f"one of {', '.join(JUDGES)}", "choose one")
+        noise_model(self.noise_model)  # raises for an unknown one
 
     def survey(self, index: int) -> tuple[Survey, Floats, Floats]:
         """The survey of this number, the same for every noise model; its true and its hand-measured pose (6,)."""
@@ -88,7 +88,7 @@ class Cell:
         start = Start(hand, self.hand_measured_prior, 1.0 / self.settings.image.line_rate_hz)
         row = {"platform": self.platform, "regime": self.regime, "noise_model": self.noise_model, "survey": index}
         try:
-            found = JUDGES[self.noise_model](survey, self.camera, start, truth)
+            found = judged_estimate(self.noise_model, survey, self.camera, start, truth)
         except LineposeError as error:
             return row | failed_estimate(str(error))
         return row | {

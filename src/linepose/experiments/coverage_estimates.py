@@ -6,21 +6,19 @@ share of the samples that lie nearer to their mean than the truth does, in Mahal
 covariance; of the published model, whose posterior is taken as normal about its optimum, chi-square's.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from scipy.stats import chi2
 
 from linepose.adjustment import Adjustment, AdjustmentSettings, adjust
 from linepose.arrays import Floats
-from linepose.estimation.optimise import laplace_covariance, minimise
+from linepose.estimation.noise_models import noise_model
+from linepose.estimation.optimise import laplace_covariance, optimise
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import difference_covariance, pose_difference
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.likelihood.base import Likelihood
-from linepose.likelihood.published import PublishedLikelihood
 from linepose.survey.observations import Survey
 
 
@@ -51,8 +49,11 @@ class Judged:
     least_eigenvalue: float = float("nan")
 
 
-def judged_adjustment(survey: Survey, camera: Camera, start: Start, truth: Floats) -> Judged:
-    """The adjustment of a survey beside the true pose (6,); raises LineposeError where there is none."""
+def judged_estimate(noise_model_name: str, survey: Survey, camera: Camera, start: Start, truth: Floats) -> Judged:
+    """A noise model's estimate beside the true pose (6,); raises LineposeError where it has none, or no region."""
+    make_likelihood = noise_model(noise_model_name).likelihood
+    if make_likelihood is not None:
+        return judged_optimum(make_likelihood(survey, camera), start.pose, truth)
     settings = AdjustmentSettings(hand_measured_prior=start.is_prior, line_period_s=start.line_period_s)
     return judged(adjust(survey, camera, start.pose, settings=settings), truth)
 
@@ -76,14 +77,9 @@ def judged(found: Adjustment, truth: Floats) -> Judged:
     )
 
 
-def judged_published(survey: Survey, camera: Camera, start: Start, truth: Floats) -> Judged:
-    """The published model's optimum beside the true pose (6,); raises LineposeError where it has no region."""
-    return judged_optimum(PublishedLikelihood(survey, camera), start.pose, truth)
-
-
 def judged_optimum(likelihood: Likelihood, start: Floats, truth: Floats) -> Judged:
     """Optimum and curvature of a likelihood of a pose, from a start (6,), beside the truth (6,)."""
-    found = minimise(likelihood, start, start)
+    found = optimise(likelihood, start)
     covariance = difference_covariance(found.parameters, laplace_covariance(likelihood, found.parameters))
     error = pose_difference(found.parameters, truth)
     return Judged(
@@ -93,9 +89,3 @@ def judged_optimum(likelihood: Likelihood, start: Floats, truth: Floats) -> Judg
         credibility=float(chi2.cdf(error @ np.linalg.solve(covariance, error), N_PARAMETERS)),
         converged=found.converged,
     )
-
-
-JUDGES: Final[dict[str, Callable[[Survey, Camera, Start, Floats], Judged]]] = {
-    "adjustment": judged_adjustment,
-    "published": judged_published,
-}

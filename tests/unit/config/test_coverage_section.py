@@ -12,9 +12,9 @@ def test_adjustment_alone_estimates_unless_told_otherwise():
     assert CoverageSection(regimes=REGIMES).regimes["white"].noise_models == ["adjustment"]
 
 
-def test_hand_measurement_counts_in_the_adjustment_alone():
+def test_hand_measurement_that_would_not_count_is_told():
     regime = {"hand_measured_prior": True, "noise_models": ["adjustment", "published"]}
-    with pytest.raises(InputError, match="hand_measured_prior counts in the adjustment alone"):
+    with pytest.raises(InputError, match="hand_measured_prior does not count under published"):
         CoverageSection(regimes={"white": regime})
 
 

@@ -83,14 +83,14 @@ def test_estimates_that_fail_hold_nothing_and_say_why(platform, monkeypatch):
         raise EstimationError("no start leads anywhere")
 
     small = cell(platform)
-    monkeypatch.setitem(coverage.JUDGES, "adjustment", raises)
+    monkeypatch.setattr(coverage, "judged_estimate", raises)
     row = small.row(0)
     assert (row["failed"], row["reason"], row["credibility"]) == (True, "no start leads anywhere", 1.0)
     assert np.isnan(row["error_r_x_m"])
-    monkeypatch.setitem(coverage.JUDGES, "adjustment", judge(converged=False))
+    monkeypatch.setattr(coverage, "judged_estimate", judge(converged=False))
     row = small.row(0)
     assert (row["failed"], row["reason"], row["credibility"]) == (True, NOT_CONVERGED, 1.0)
-    monkeypatch.setitem(coverage.JUDGES, "adjustment", judge(converged=True))
+    monkeypatch.setattr(coverage, "judged_estimate", judge(converged=True))
     row = small.row(0)
     assert (row["failed"], row["reason"], row["credibility"], row["sigma_r_x_m"]) == (False, "", 0.4, 2.0)
 
@@ -111,9 +111,7 @@ def test_hand_measurement_is_drawn_anew_where_it_counts(platform):
 
 def test_hand_measurement_counts_where_it_is_said_to(platform, monkeypatch):
     starts = []
-    monkeypatch.setitem(
-        coverage.JUDGES, "adjustment", lambda *given: starts.append(given[2]) or judge(converged=True)()
-    )
+    monkeypatch.setattr(coverage, "judged_estimate", lambda *given: starts.append(given[3]) or judge(converged=True)())
     for counts in (False, True):
         cell(platform, hand_measured_prior=counts).row(0)
     assert [start.is_prior for start in starts] == [False, True]
@@ -131,5 +129,5 @@ def test_hand_measurements_are_off_by_their_sigmas_on_every_body_axis():
 
 
 def test_unknown_noise_model_is_told(platform):
-    with pytest.raises(InputError, match=r"noise model: found 'balancd', expected one of adjustment, published"):
-        cell(platform, "balancd")
+    with pytest.raises(InputError, match="noise_model: found 'publishd', expected one of adjustment, published"):
+        cell(platform, "publishd")

@@ -10,14 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from linepose.estimation.noise_models import noise_model
 from linepose.experiments.coverage_summary import ALL_PLATFORMS, ratio_interval
-from linepose.output.figures.style import BLACK, GREEN, GREY, LEAST_PT, ORANGE, WIDE_IN, blank_figure, styled
+from linepose.output.figures.style import BLACK, GREY, LEAST_PT, WIDE_IN, blank_figure, styled
 from linepose.pipeline.table_checks import usable_rows
 
 _PANELS_A_ROW: Final = 4
 _TITLE_LETTERS: Final = 15
 _ROW_IN: Final = 0.17
-_COLOURS: Final = {"adjustment": GREEN, "published": ORANGE}
 _PLATFORM_LINES: Final = ("-", "--", ":", "-.")
 _PLATFORM_MARKERS: Final = ("o", "D", "s", "^")
 _RATIOS_SHOWN: Final = (0.8, 1.3)
@@ -37,7 +37,7 @@ def coverage(curve: pd.DataFrame) -> Figure:
     for panel, regime in zip(panels, regimes, strict=False):
         panel.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
         for (platform, model), line in rows[rows["regime"] == regime].groupby(["platform", "noise_model"], sort=False):
-            colour, kind = _COLOURS[str(model)], _PLATFORM_LINES[platforms.index(str(platform)) % 4]
+            colour, kind = noise_model(str(model)).colour, _PLATFORM_LINES[platforms.index(str(platform)) % 4]
             panel.fill_between(line["nominal"], line["coverage_low"], line["coverage_high"], color=colour, alpha=0.15)
             panel.plot(line["nominal"], line["coverage"], kind, color=colour, linewidth=1.0)
         panel.set(xlim=(0, 1), ylim=(0, 1), xticks=[0, 0.5, 1], yticks=[0, 0.5, 1])
@@ -73,7 +73,7 @@ def ratios(summary: pd.DataFrame) -> Figure:
             low, high = ratio_interval(row["n_surveys"] - row["n_failed"])
             panel.plot([low, high], [at, at], color=GREY, linewidth=5, alpha=0.5, solid_capstyle="butt")
         for _, row in part.iterrows():
-            at, colour = regimes.index(row["regime"]), _COLOURS[row["noise_model"]]
+            at, colour = regimes.index(row["regime"]), noise_model(row["noise_model"]).colour
             if least < row["ratio"] < most:
                 panel.plot(row["ratio"], at, "o", color=colour, markersize=3.5)
             else:
@@ -103,7 +103,7 @@ def errors(summary: pd.DataFrame) -> Figure:
     ):
         for _, row in rows.iterrows():
             marker = _PLATFORM_MARKERS[platforms.index(row["platform"]) % 4]
-            colour, at = _COLOURS[row["noise_model"]], regimes.index(row["regime"])
+            colour, at = noise_model(row["noise_model"]).colour, regimes.index(row["regime"])
             panel.plot(scale * row[column], at, marker, color=colour, markersize=3.5)
         panel.set_xscale("log")
         low, high = panel.get_xlim()
@@ -141,5 +141,5 @@ def _rows_of(panel: Axes, regimes: list[str]) -> None:
 
 
 def _legend(figure: Figure, models: list[str], further: list[Line2D]) -> None:
-    handles = [Line2D([], [], color=_COLOURS[model], linewidth=2.5, label=model) for model in models]
+    handles = [Line2D([], [], color=noise_model(model).colour, linewidth=2.5, label=model) for model in models]
     figure.legend(handles=handles + further, loc="outside upper center", ncols=len(models) + len(further))
