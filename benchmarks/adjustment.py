@@ -9,6 +9,7 @@ building must not be reported.
 """
 
 import argparse
+import resource
 import sys
 import time
 from collections.abc import Callable
@@ -18,21 +19,17 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from unit.adjustment import timed_survey
+from unit.adjustment import strips, timed_survey
 from unit.likelihood import field_data
 
 from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.adjustment.estimate import unit_weights
 from linepose.adjustment.gradient import slopes_of_density
-from linepose.adjustment.iterative import blocks, conjugate_gradients, equations
 from linepose.adjustment.levels import Levels
-from linepose.adjustment.linearise import empty_linearised, linearise
-from linepose.adjustment.measurements import Measurements, measurements_from_survey
-from linepose.adjustment.process import components, error_image
+from linepose.adjustment.measurements import measurements_from_survey
 from linepose.adjustment.solve import model_at, pass_at
 from linepose.adjustment.start import start_points
-from linepose.adjustment.state import Knowledge, State, state_at
-from linepose.adjustment.whitening import factorise
+from linepose.adjustment.state import Knowledge, state_at
 from linepose.geometry.distance import mahalanobis_between
 
 HAND_MEASURED = np.array([0.200, 0.000, -0.800, -0.762, 0.762, -1.433])
@@ -76,36 +73,21 @@ def speed() -> None:
 
 
 def growth(counts: list[int]) -> None:
-    """Seconds to factor the error process and to solve the normal equations, as measurements grow."""
+    """Seconds and memory of whole adjustments of flights in strips, as measurements grow."""
+    settings = AdjustmentSettings(line_period_s=strips.LINE_S)
     for count in counts:
-        n_views = max(count // 2000, 4)
-        survey = timed_survey.make_survey(n_views, count // n_views, seed=1, gap_s=60.0)
-        camera, pose = timed_survey.CAMERA, timed_survey.POSE
-        measurements, knowledge = measurements_from_survey(survey, camera), Knowledge(camera, None)
-        state = state_at(pose, camera, start_points(measurements, camera, pose), len(measurements.u_px))
-        seconds, iterations = _solved(measurements, knowledge, state)
+        n_strips = 50 if count >= 10_000 else 10
+        survey = strips.make_flight(n_strips, max(count // 12, 20))
+        adjust(survey, strips.CAMERA, strips.POSE, settings=settings.replaced(n_draws=10))  # compiles
+        wall, processor = time.perf_counter(), time.process_time()
+        adjust(survey, strips.CAMERA, strips.POSE, settings=settings)
+        wall, processor = time.perf_counter() - wall, time.process_time() - processor
+        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
         print(
-            f"{len(measurements.u_px):8d} measurements, {measurements.n_points:6d} points: "
-            f"{seconds:.2f} s of one core, {iterations} iterations",
+            f"{np.isfinite(survey.u_px).sum():8d} measurements, {survey.n_points:6d} points: {wall:.1f} s, "
+            f"{processor:.1f} s of one core, at most {memory:.2f} GiB",
             flush=True,
         )
-
-
-def _solved(measurements: Measurements, knowledge: Knowledge, state: State) -> tuple[float, int]:
-    weights, structure = unit_weights(measurements), measurements.structure
-    linearised = empty_linearised(len(measurements.u_px))
-    optics = state.optics(knowledge.camera)
-    for _ in range(2):  # the first compiles
-        start = time.process_time()
-        body, rates = state.body_poses(measurements), knowledge.rates(measurements)
-        linearise(measurements.u_px, body, rates, measurements.point, state.points_m, optics, linearised)
-        process = components(structure, error_image(structure, linearised), LEVELS, weights)
-        factor = factorise(process, structure.view_of, structure.begins)
-        system = equations(linearised, measurements.point, factor, knowledge.prior(state, measurements))
-        right = system.right_side(linearised.residual_px.ravel())
-        _, iterations = conjugate_gradients(system, blocks(system), right, 1e-7)
-        seconds = time.process_time() - start
-    return seconds, iterations
 
 
 def halves(n_splits: int, seed: int) -> None:

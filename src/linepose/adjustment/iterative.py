@@ -1,8 +1,10 @@
 """Many points: the normal equations without their matrix, in memory and time that follow the measurements.
 
 `N x = A^T C^-1 A x + prior` takes one filter pass forwards and one backwards, whatever the number of points. Conjugate
-gradients solve it, preconditioned by the normal equations of innovations taken for independent, in which points are
-3 x 3 blocks and eliminated at once. Columns x are points (3 K), then those of the camera, as in `normal`.
+gradients solve it, preconditioned twice: by the normal equations of innovations taken for independent, in which points
+are 3 x 3 blocks and eliminated at once; and by N itself on smooth displacements of all points, which an error of the
+navigation that lasts looks like and which independent innovations hold for far better known than they are. Columns x
+are points (3 K), then those of the camera, as in `normal`.
 """
 
 from dataclasses import dataclass
@@ -13,11 +15,13 @@ import numpy as np
 from linepose.adjustment.compiling import kernel
 from linepose.adjustment.linearise import Linearised
 from linepose.adjustment.normal import N_CAMERA, N_POSE, Prior
-from linepose.adjustment.whitening import Factor, unwhiten_columns, whiten
+from linepose.adjustment.whitening import Factor, unwhiten, whiten_residual
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
 
 _MOST_ITERATIONS: Final = 2000
+_DEGREE: Final = 6  # of the smooth displacements
+_LEAST_EIGENVALUE: Final = 1e-12  # of their normal equations with unit diagonal, below which one depends on others
 
 
 @dataclass(frozen=True)
@@ -39,39 +43,25 @@ class Equations:
         """Number of points K."""
         return len(self.prior.points)
 
-    def times_design(self, columns: Floats) -> Floats:
-        """A times columns (3 K + 9, m), rows u and v of each measurement; (2 L, m)."""
-        return _times_design(self.by_point, self.camera, self.point, columns)
+    def times_design(self, column: Floats) -> Floats:
+        """A times a column (3 K + 9,), rows u and v of each measurement; (L, 2)."""
+        return _times_design(self.by_point, self.camera, self.point, column)
 
-    def times_design_transposed(self, rows: Floats) -> Floats:
-        """A^T times rows (2 L, m); (3 K + 9, m)."""
-        return _times_transposed(self.by_point, self.camera, self.point, self.n_points, rows)
+    def transposed_information(self, residual: Floats) -> Floats:
+        """`A^T C^-1` times residuals (L, 2); (3 K + 9,)."""
+        weighted = unwhiten(self.factor, whiten_residual(self.factor, residual))
+        return _times_transposed(self.by_point, self.camera, self.point, self.n_points, weighted)
 
-    def information_of_rows(self, rows: Floats) -> Floats:
-        """C^-1 times rows (2 L, m), which are overwritten."""
-        whiten(self.factor, rows)
-        return unwhiten_columns(self.factor, rows)
-
-    def times_prior(self, columns: Floats) -> Floats:
-        """The prior's information times columns (3 K + 9, m)."""
-        points = columns[:-N_CAMERA].reshape(self.n_points, 3, -1)
-        return np.concatenate(
-            [
-                np.einsum("kij,kjm->kim", self.prior.points, points).reshape(3 * self.n_points, -1),
-                self.prior.camera @ columns[-N_CAMERA:],
-            ]
-        )
-
-    def times_normal(self, columns: Floats) -> Floats:
-        """N times columns (3 K + 9, m)."""
-        weighted = self.information_of_rows(self.times_design(columns))
-        return self.times_design_transposed(weighted) + self.times_prior(columns)
+    def times_normal(self, column: Floats) -> Floats:
+        """N times a column (3 K + 9,)."""
+        points = np.einsum("kij,kj->ki", self.prior.points, column[:-N_CAMERA].reshape(-1, 3)).ravel()
+        prior = np.concatenate([points, self.prior.camera @ column[-N_CAMERA:]])
+        return self.transposed_information(self.times_design(column)) + prior
 
     def right_side(self, residual: Floats) -> Floats:
-        """`A^T C^-1 e + prior` of residuals (2 L,); (3 K + 9, 1)."""
-        weighted = self.information_of_rows(residual[:, None].copy())
+        """`A^T C^-1 e + prior` of residuals (L, 2); (3 K + 9,)."""
         prior = np.concatenate([self.prior.points_vector.ravel(), self.prior.camera_vector])
-        return self.times_design_transposed(weighted) + prior[:, None]
+        return self.transposed_information(residual) + prior
 
 
 def equations(linearised: Linearised, point: np.ndarray, factor: Factor, prior: Prior) -> Equations:
@@ -86,32 +76,58 @@ def equations(linearised: Linearised, point: np.ndarray, factor: Factor, prior: 
 class Blocks:
     """Normal equations with independent measurements, factored.
 
-    points (K, 3, 3): inverted; coupling (K, 3, 9): of points and camera; camera (9, 9): its reduced matrix, inverted.
+    points (K, 3, 3): inverted; coupling (3 K, 9): of points and camera; camera (9, 9): its reduced matrix, inverted.
     """
 
     points: Floats
     coupling: Floats
     camera: Floats
 
-    def solve(self, columns: Floats) -> Floats:
-        """The inverse times columns (3 K + 9, m)."""
-        points = columns[:-N_CAMERA].reshape(len(self.points), 3, -1)
-        first = np.einsum("kij,kjm->kim", self.points, points)
-        camera = self.camera @ (columns[-N_CAMERA:] - np.einsum("kic,kim->cm", self.coupling, first))
-        moved = np.einsum("kij,kjm->kim", self.points, np.einsum("kic,cm->kim", self.coupling, camera))
-        return np.concatenate([(first - moved).reshape(columns.shape[0] - N_CAMERA, -1), camera])
+    def solve(self, column: Floats) -> Floats:
+        """The inverse times a column (3 K + 9,)."""
+        first = self._points(column[:-N_CAMERA])
+        camera = self.camera @ (column[-N_CAMERA:] - first @ self.coupling)
+        return np.concatenate([first - self._points(self.coupling @ camera), camera])
+
+    def _points(self, column: Floats) -> Floats:
+        return np.matmul(self.points, column.reshape(-1, 3, 1)).ravel()
+
+
+@dataclass(frozen=True)
+class Smooth:
+    """S smooth columns (3 K + 9, S) and the inverse (S, S) of their normal equations."""
+
+    columns: Floats
+    inverse: Floats
+
+    def solve(self, column: Floats) -> Floats:
+        """The inverse, of what the smooth columns span, times a column (3 K + 9,)."""
+        return self.columns @ (self.inverse @ (column @ self.columns))
+
+
+@dataclass(frozen=True)
+class Preconditioner:
+    """The sum of both parts; symmetric and positive definite whatever either was built at."""
+
+    blocks: Blocks
+    smooth: Smooth
+
+    def solve(self, column: Floats) -> Floats:
+        """An approximation of the inverse of the normal equations times a column (3 K + 9,)."""
+        return self.blocks.solve(column) + self.smooth.solve(column)
 
 
 def blocks(system: Equations) -> Blocks:
-    """The preconditioner; raises EstimationError for a point that is seen from one direction only."""
+    """The part of independent measurements; raises EstimationError for a point seen from one direction only."""
     points, coupling, camera = _block_products(
         system.by_point, system.camera, system.point, system.factor.root, system.n_points
     )
     points += system.prior.points
     camera += system.prior.camera
+    coupling = coupling.reshape(-1, N_CAMERA)
     try:
         inverse = np.linalg.inv(points)
-        reduced = camera - np.einsum("kic,kij,kjd->cd", coupling, inverse, coupling)
+        reduced = camera - coupling.T @ np.matmul(inverse, coupling.reshape(-1, 3, N_CAMERA)).reshape(-1, N_CAMERA)
         return Blocks(inverse, coupling, np.linalg.inv(reduced))
     except np.linalg.LinAlgError:
         raise EstimationError(
@@ -119,64 +135,85 @@ def blocks(system: Equations) -> Blocks:
         ) from None
 
 
-def conjugate_gradients(system: Equations, inverse: Blocks, right: Floats, tolerance: float) -> tuple[Floats, int]:
-    """N^-1 times columns (3 K + 9, m), and the number of iterations.
+def smooth(system: Equations, points_m: Floats) -> Smooth:
+    """The part of smooth displacements of points (K, 3) and of the camera.
 
-    It ends when the preconditioned residual of every column is `tolerance` of the right side's. Raises EstimationError
-    where that takes too long.
+    Displacements are polynomials of the position along the two axes on which the points spread most.
+    """
+    columns = smooth_columns(points_m)
+    product = np.array([system.times_normal(column) for column in columns.T]) @ columns
+    scale = np.sqrt(np.diag(product))
+    values, vectors = np.linalg.eigh((product + product.T) / 2 / np.outer(scale, scale))
+    inverse = np.where(values > _LEAST_EIGENVALUE * values[-1], 1 / np.maximum(values, 1e-300), 0.0)
+    return Smooth(columns, (vectors * inverse) @ vectors.T / np.outer(scale, scale))
+
+
+def smooth_columns(points_m: Floats) -> Floats:
+    """Columns (3 K + 9, S): polynomial displacements of points (K, 3), and each of the camera's columns alone."""
+    off = points_m - points_m.mean(axis=0)
+    along = off @ np.linalg.svd(off, full_matrices=False)[2][:2].T
+    scaled = along / np.maximum(np.abs(along).max(axis=0), 1e-300)
+    first, second = (np.polynomial.chebyshev.chebvander(one, _DEGREE) for one in scaled.T)
+    terms = [first[:, i] * second[:, j] for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)]
+    columns = np.zeros((points_m.size + N_CAMERA, 3 * len(terms) + N_CAMERA))
+    for k, term in enumerate(terms):
+        for axis in range(3):
+            columns[axis : points_m.size : 3, 3 * k + axis] = term
+    columns[-N_CAMERA:, -N_CAMERA:] = np.eye(N_CAMERA)
+    return columns
+
+
+def conjugate_gradients(
+    system: Equations, inverse: Preconditioner, right: Floats, tolerance: float
+) -> tuple[Floats, int]:
+    """N^-1 times a column (3 K + 9,), and the number of iterations.
+
+    It ends when the preconditioned residual is `tolerance` of the right side's. Raises EstimationError where that takes
+    too long.
     """
     x, residual = np.zeros_like(right), right.copy()
     direction = scaled = inverse.solve(residual)
-    rho = np.einsum("ij,ij->j", residual, scaled)
-    target = tolerance**2 * np.maximum(rho, 1e-300)
+    rho = float(residual @ scaled)
+    target = tolerance**2 * rho
     for iteration in range(_MOST_ITERATIONS):
-        if np.all(rho <= target):
+        if rho <= target:
             return x, iteration
         product = system.times_normal(direction)
-        step = rho / np.maximum(np.einsum("ij,ij->j", direction, product), 1e-300)
+        step = rho / float(direction @ product)
         x = x + step * direction
         residual = residual - step * product
         scaled = inverse.solve(residual)
-        before, rho = rho, np.einsum("ij,ij->j", residual, scaled)
-        direction = scaled + rho / np.maximum(before, 1e-300) * direction
+        before, rho = rho, float(residual @ scaled)
+        direction = scaled + rho / before * direction
     raise EstimationError("adjustment: the normal equations of many points do not converge; add observations")
 
 
 @kernel
-def _times_design(by_point: Floats, camera: Floats, point: np.ndarray, columns: Floats) -> Floats:
-    n, m, first = by_point.shape[0], columns.shape[1], columns.shape[0] - N_CAMERA
-    out = np.zeros((2 * n, m))
+def _times_design(by_point: Floats, camera: Floats, point: np.ndarray, column: Floats) -> Floats:
+    n, first = by_point.shape[0], column.shape[0] - N_CAMERA
+    out = np.empty((n, 2))
     for line in range(n):
         start = 3 * point[line]
         for row in range(2):
-            target = out[2 * line + row]
+            total = 0.0
             for i in range(3):
-                value, source = by_point[line, row, i], columns[start + i]
-                for j in range(m):
-                    target[j] += value * source[j]
+                total += by_point[line, row, i] * column[start + i]
             for i in range(N_CAMERA):
-                value, source = camera[line, row, i], columns[first + i]
-                for j in range(m):
-                    target[j] += value * source[j]
+                total += camera[line, row, i] * column[first + i]
+            out[line, row] = total
     return out
 
 
 @kernel
 def _times_transposed(by_point: Floats, camera: Floats, point: np.ndarray, n_points: int, rows: Floats) -> Floats:
-    n, m, first = by_point.shape[0], rows.shape[1], 3 * n_points
-    out = np.zeros((first + N_CAMERA, m))
+    n, first = by_point.shape[0], 3 * n_points
+    out = np.zeros(first + N_CAMERA)
     for line in range(n):
-        start = 3 * point[line]
-        for row in range(2):
-            source = rows[2 * line + row]
-            for i in range(3):
-                value, target = by_point[line, row, i], out[start + i]
-                for j in range(m):
-                    target[j] += value * source[j]
-            for i in range(N_CAMERA):
-                value, target = camera[line, row, i], out[first + i]
-                for j in range(m):
-                    target[j] += value * source[j]
+        start, u, v = 3 * point[line], rows[line, 0], rows[line, 1]
+        for i in range(3):
+            out[start + i] += by_point[line, 0, i] * u + by_point[line, 1, i] * v
+        for i in range(N_CAMERA):
+            out[first + i] += camera[line, 0, i] * u + camera[line, 1, i] * v
     return out
 
 

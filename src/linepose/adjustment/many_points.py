@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from linepose.adjustment.iterative import blocks, conjugate_gradients, equations
+from linepose.adjustment.iterative import Equations, Preconditioner, blocks, conjugate_gradients, equations, smooth
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import empty_linearised, linearise
 from linepose.adjustment.measurements import Measurements
@@ -20,7 +20,7 @@ from linepose.adjustment.posterior import Mixture
 from linepose.adjustment.process import Weights, components, corrections, error_image
 from linepose.adjustment.state import Knowledge, State
 from linepose.adjustment.tails import DEGREES_OF_FREEDOM, MEASUREMENT_DIMENSION
-from linepose.adjustment.whitening import factorise, unwhiten, whiten
+from linepose.adjustment.whitening import factorise, unwhiten, whiten_residual
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
 from linepose.survey.observations import Survey
@@ -28,7 +28,7 @@ from linepose.survey.observations import Survey
 MANY_POINTS: Final = 150  # above which the normal equations are not formed as a matrix
 FEW_POINTS: Final = 60  # that then tell the levels
 _TOLERANCE: Final = 1e-6  # of chi squared
-_PRECISION: Final = 1e-7  # of a step, in the preconditioner's norm
+_PRECISION: Final = 1e-3  # of a step, in the preconditioner's norm; what is left the next step takes
 _COVARIANCE_PRECISION: Final = 1e-4
 _MOST_STEPS: Final = 30
 _LOOSE: Final = 1e-2  # of chi squared, where weights move
@@ -82,8 +82,8 @@ def solve_many(
     With `tails` every step weighs each measurement by its two whitened residuals, w = 6 / (4 + d). Raises
     EstimationError where a point is behind the camera, or the normal equations cannot be solved.
     """
-    structure, n_points = measurements.structure, measurements.n_points
-    state, steps = start, 0
+    structure = measurements.structure
+    state, steps, displacements = start, 0, None
     while True:
         linearised = empty_linearised(len(measurements.u_px))
         if linearise(
@@ -101,14 +101,13 @@ def solve_many(
         process = components(structure, error_image(structure, linearised), levels, weights)
         factor = factorise(process, structure.view_of, structure.begins)
         system = equations(linearised, measurements.point, factor, knowledge.prior(state, measurements))
-        moved = np.einsum("lri,li->lr", linearised.by_body, state.correction)
-        residual = (linearised.residual_px + moved).ravel()
-        right, inverse = system.right_side(residual), blocks(system)
+        displacements = displacements or smooth(system, state.points_m)
+        inverse = Preconditioner(blocks(system), displacements)
+        residual = linearised.residual_px + np.einsum("lri,li->lr", linearised.by_body, state.correction)
+        right = system.right_side(residual)
         step, _ = conjugate_gradients(system, inverse, right, _PRECISION)
-        gain = float(right[:, 0] @ step[:, 0])
-        left = residual[:, None] - system.times_design(step)
-        whiten(factor, left)
-        whitened = left.reshape(-1, 2)
+        gain = float(right @ step)
+        whitened = whiten_residual(factor, residual - system.times_design(step))
         dual = unwhiten(factor, whitened)
         correction, z, q = corrections(structure, process, linearised, levels, weights, dual)
         before = weights.of_measurement
@@ -119,14 +118,20 @@ def solve_many(
         converged = gain < (_LOOSE if tails else _TOLERANCE) and settled
         if converged or steps >= _MOST_STEPS:
             break
-        state, steps = state.moved(step[:, 0], correction), steps + 1
-    unit = np.zeros((3 * n_points + N_CAMERA, N_CAMERA))
-    unit[-N_CAMERA:] = np.eye(N_CAMERA)
-    inverse_columns, _ = conjugate_gradients(system, inverse, unit, _COVARIANCE_PRECISION)
-    covariance = inverse_columns[-N_CAMERA:]
+        state, steps = state.moved(step, correction), steps + 1
     chi_squared = float(np.sum(whitened**2)) + system.prior.chi_squared
-    symmetric = (covariance + covariance.T) / 2
-    return ManySolution(state, symmetric, whitened, z, q, weights, chi_squared, steps, converged)
+    covariance = _camera_covariance(system, inverse)
+    return ManySolution(state, covariance, whitened, z, q, weights, chi_squared, steps, converged)
+
+
+def _camera_covariance(system: Equations, inverse: Preconditioner) -> Floats:
+    """Covariance (9, 9) of the camera's columns."""
+    covariance = np.empty((N_CAMERA, N_CAMERA))
+    for i in range(N_CAMERA):
+        unit = np.zeros(3 * system.n_points + N_CAMERA)
+        unit[i - N_CAMERA] = 1.0
+        covariance[i] = conjugate_gradients(system, inverse, unit, _COVARIANCE_PRECISION)[0][-N_CAMERA:]
+    return (covariance + covariance.T) / 2
 
 
 def spread_of_many(few: Mixture, few_covariance: Floats, covariance: Floats) -> Mixture:

@@ -126,6 +126,30 @@ def whiten(factor: Factor, rows: Floats) -> None:
 
 
 @kernel
+def whiten_residual(factor: Factor, residual: Floats) -> Floats:
+    """W times residuals (L, 2); (L, 2)."""
+    n = residual.shape[0]
+    out = np.empty((n, 2))
+    x = np.zeros(N_STATE)
+    for line in range(n):
+        e0, e1, decay = residual[line, 0], residual[line, 1], factor.decay[line]
+        h0, h1, gain = factor.observe[line, 0], factor.observe[line, 1], factor.gain[line]
+        for i in range(6):
+            x[i] *= decay
+        if factor.begins[line]:
+            x[6:] = 0.0
+        for i in range(N_STATE):
+            e0 -= h0[i] * x[i]
+            e1 -= h1[i] * x[i]
+        w0 = e0 * factor.root[line, 0]
+        w1 = (e1 - factor.root[line, 1] * w0) * factor.root[line, 2]
+        out[line, 0], out[line, 1] = w0, w1
+        for i in range(N_STATE):
+            x[i] += gain[i, 0] * w0 + gain[i, 1] * w1
+    return out
+
+
+@kernel
 def unwhiten(factor: Factor, whitened: Floats) -> Floats:
     """W^T times whitened residuals (L, 2): `C^-1 e` of what was whitened; (L, 2)."""
     n = whitened.shape[0]

@@ -37,7 +37,7 @@ LIMITS = {
 class Case:
     """A survey, a state with corrections that are not zero, weights that are not one, and the same in dense form."""
 
-    def __init__(self, levels, survey=None, known=None):
+    def __init__(self, levels, survey=None, known=None, with_dense=True):
         random = np.random.default_rng(5)
         survey = survey or timed_survey.without(timed_survey.make_survey(5, 6, seed=3), (0, 1), (3, 2), (4, 5))
         self.measurements = m = measurements_from_survey(survey, CAMERA, known, line_period_s=timed_survey.LINE_S)
@@ -49,7 +49,8 @@ class Case:
         self.weights = Weights(random.uniform(0.3, 1.2, m.n_views), random.uniform(0.3, 1.2, n))
         self.model = model_at(m, self.knowledge, self.state)
         self.process, self.done = pass_at(m, self.model, levels, self.weights)
-        self._dense(survey)
+        if with_dense:
+            self._dense(survey)
 
     def _dense(self, survey):
         m, state = self.measurements, self.state

@@ -6,7 +6,7 @@ import pytest
 from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.adjustment import adjust as adjust_module
 from linepose.adjustment.estimate import unit_weights
-from linepose.adjustment.iterative import blocks, conjugate_gradients, equations
+from linepose.adjustment.iterative import Preconditioner, Smooth, blocks, conjugate_gradients, equations, smooth
 from linepose.adjustment.many_points import solve_many
 from linepose.adjustment.normal import solve_step, trailing_inverse
 from linepose.adjustment.solve import solve
@@ -21,15 +21,15 @@ def case():
 
 def test_step_and_covariance_of_the_normal_equations(case):
     system = equations(case.model.linearised, case.measurements.point, case.done.factor, case.model.prior)
-    inverse = blocks(system)
-    right = system.right_side(case.e)
-    assert np.allclose(right[:, 0], case.right, rtol=1e-9, atol=1e-9 * np.abs(case.right).max())
-    columns = np.eye(len(case.right))
-    assert np.allclose(system.times_normal(columns), case.normal, rtol=0, atol=1e-9 * np.abs(case.normal).max())
+    inverse = Preconditioner(blocks(system), smooth(system, case.state.points_m))
+    right = system.right_side(case.e.reshape(-1, 2))
+    assert np.allclose(right, case.right, rtol=1e-9, atol=1e-9 * np.abs(case.right).max())
+    columns = np.array([system.times_normal(column) for column in np.eye(len(case.right))])
+    assert np.allclose(columns, case.normal, rtol=0, atol=1e-9 * np.abs(case.normal).max())
     step, _ = conjugate_gradients(system, inverse, right, 1e-12)
     sigma = np.sqrt(np.diag(np.linalg.inv(case.normal)))
     dense_step = solve_step(case.done.upper, 3 * case.measurements.n_points, 0.0)
-    assert np.allclose((step[:, 0] - dense_step) / sigma, 0, atol=1e-6)
+    assert np.allclose((step - dense_step) / sigma, 0, atol=1e-6)
 
 
 def test_the_same_optimum_and_covariance(case):
@@ -43,6 +43,20 @@ def test_the_same_optimum_and_covariance(case):
     assert np.all(np.abs(many.state.pose - few.state.pose) < 3e-3 * sigma[3:])
     assert np.allclose(many.camera_covariance / np.outer(sigma, sigma), covariance / np.outer(sigma, sigma), atol=1e-3)
     assert np.allclose(many.state.correction / timed_survey.SIGMA, few.state.correction / timed_survey.SIGMA, atol=5e-3)
+
+
+def test_smooth_displacements_save_most_iterations():
+    survey = timed_survey.make_survey(8, 300, timed_survey.Errors(constant=1.0, drift=1.0), seed=42)
+    case = Case(LEVELS._replace(white=0.01, pixel=0.2, lateness=0.02), survey=survey, with_dense=False)
+    system = equations(case.model.linearised, case.measurements.point, case.done.factor, case.model.prior)
+    parts = blocks(system), smooth(system, case.state.points_m)
+    none = Smooth(np.zeros((3 * 300 + 9, 1)), np.zeros((1, 1)))
+    right = system.right_side(case.model.linearised.residual_px)
+    (one, many), (other, few) = (
+        conjugate_gradients(system, Preconditioner(parts[0], part), right, 1e-7) for part in (none, parts[1])
+    )
+    assert few < 0.5 * many
+    assert (one - other) @ system.times_normal(one - other) < 1e-12 * (one @ right)
 
 
 def test_an_adjustment_of_many_points(monkeypatch):
