@@ -148,6 +148,28 @@ def test_normalised_residuals_have_the_variance_of_the_model(case):
     assert np.allclose(found[good], (whitened / np.sqrt(np.maximum(redundancy, 1e-300)))[good], atol=1e-6)
 
 
+def test_drift_that_ends_at_once_is_white_and_one_that_never_ends_in_one_view_is_constant():
+    case = Case(LEVELS)
+    weights = unit_weights(case.measurements)
+    both = float(np.hypot(LEVELS.drift, LEVELS.white))
+    ends = LEVELS._replace(correlation_time_s=1e-9)
+    white = LEVELS._replace(drift=0.0, white=both)
+    one, other = (pass_at(case.measurements, case.model, levels, weights)[1] for levels in (ends, white))
+    assert one.chi_squared == pytest.approx(other.chi_squared, rel=1e-9)
+    assert one.log_determinant == pytest.approx(other.log_determinant, rel=1e-9)
+    view = case.measurements.structure._replace(
+        begins=np.arange(len(weights.of_measurement)) == 0, view_of=np.zeros_like(case.measurements.view)
+    )
+    single = replace(case.measurements, structure=view)
+    weights = weights._replace(of_view=np.ones(1))
+    both = float(np.hypot(LEVELS.drift, LEVELS.constant))
+    stays = LEVELS._replace(correlation_time_s=1e14)
+    constant = LEVELS._replace(drift=0.0, constant=both)
+    one, other = (pass_at(single, case.model, levels, weights)[1] for levels in (stays, constant))
+    assert one.chi_squared == pytest.approx(other.chi_squared, rel=1e-7)
+    assert one.log_determinant == pytest.approx(other.log_determinant, rel=1e-7)
+
+
 def test_without_times_views_follow_one_another_and_nothing_drifts():
     survey = timed_survey.make_survey(4, 5, seed=8)
     untimed = replace(survey, time_us=np.zeros_like(survey.time_us))
