@@ -17,6 +17,14 @@ from linepose.tables import mark_tables
 _HUSHED = ("numba", "matplotlib", "fontTools", "PIL")
 
 
+class _Marked(logging.Formatter):
+    """Marks warnings, which `linepose run` shows although it shows one line a stage."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        text = super().format(record)
+        return text.replace(": ", ": warning: ", 1) if record.levelno == logging.WARNING else text
+
+
 @contextmanager
 def stage(job: Any) -> Iterator[logging.Logger]:
     """Run a stage: its messages go to the rule's log and to the terminal; a fault ends the job with one line.
@@ -29,11 +37,10 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     hold_job_lock(Path())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(job.threads))
     log = logging.getLogger(f"linepose.{job.rule}")
-    logging.basicConfig(
-        level=logging.INFO,
-        format="%(name)s: %(message)s",
-        handlers=[logging.FileHandler(str(job.log[0]), mode="w"), logging.StreamHandler()],
-    )
+    handlers = [logging.FileHandler(str(job.log[0]), mode="w"), logging.StreamHandler()]
+    for handler in handlers:
+        handler.setFormatter(_Marked("%(name)s: %(message)s"))
+    logging.basicConfig(level=logging.INFO, handlers=handlers)
     for name in _HUSHED:
         logging.getLogger(name).setLevel(logging.WARNING)
     if any(Path(file).suffix in (".parquet", "") for file in job.output):

@@ -43,7 +43,7 @@ except LineposeError as error:
 
 if PROJECT.unavailable and workflow.is_main_process:
     logger.warning(
-        f"data set {', '.join(PROJECT.unavailable)}: not in {', '.join(PROJECT.study.data_folders)}, and `offline` "
+        f"linepose: data set {', '.join(PROJECT.unavailable)}: not in {', '.join(PROJECT.study.data_folders)}, and `offline` "
         f"forbids to download it; only the other platforms run: {', '.join(PROJECT.platforms)}"
     )
 
@@ -92,7 +92,7 @@ def remade_if_lost(folder):
             if name not in TOLD:
                 TOLD.add(name)
                 logger.warning(
-                    f"{name}: {', '.join(lost)} lost; the folder is made again"
+                    f"linepose: {name}: {', '.join(lost)} lost; the folder is made again"
                 )
         return []
 

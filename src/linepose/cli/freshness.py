@@ -15,7 +15,7 @@ def tell_outdated(project: "Project", root: Path, name: str) -> None:
 
     Results of experiments are not looked at.
     """
-    from linepose.cli.run import find_workflow
+    from linepose.cli.workflow_files import find_workflow
     from linepose.errors import InputError
     from linepose.pipeline.outdated import Present, outdated_results, told
 

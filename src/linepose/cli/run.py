@@ -1,5 +1,6 @@
 """`linepose run NAME`: the workflow for one platform, Snakemake as a subprocess."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -28,17 +29,18 @@ def run(
     """
     from linepose.cli.freshness import all_outdated
     from linepose.cli.snakemake_process import files_of_workflow, run_snakemake
+    from linepose.cli.workflow_files import find_workflow
     from linepose.experiments.registry import compared_platforms
     from linepose.pipeline.outdated import told
     from linepose.pipeline.project_folder import find_project, load_platform_project
     from linepose.pipeline.run_lock import check_no_run
 
     root = find_project(project)
-    loaded = load_platform_project(name, root, compared_platforms)
-    snakefile = find_workflow(root)
     if not dry_run:
         check_no_run(root)
-    arguments = ["--cores", str(cores or "all"), "--quiet", "host", "rules", "--config", f'platforms=["{name}"]']
+    loaded = load_platform_project(name, root, compared_platforms)
+    snakefile = find_workflow(root)
+    arguments = ["--cores", str(cores or "all"), "--quiet", "host", "--config", f'platforms=["{name}"]']
     outdated = all_outdated(loaded, root, name, snakefile.parent / "scripts")
     if outdated:
         typer.echo(f"{'would be made again' if dry_run else 'made again'}: {told(outdated)}", err=True)
@@ -46,28 +48,44 @@ def run(
         outputs = (place for one in outdated for place in (one.path, one.path.rpartition("/")[0]))  # or its folder
         if forced := sorted(wanted.intersection(outputs)):
             arguments += ["--forcerun", *forced]
-    arguments += ["--dry-run"] if dry_run else []
-    if run_snakemake(snakefile, root, [*arguments, *(further or [])]):
-        typer.echo(
-            f"linepose: run {name} stopped: the fault stands above, and in {root / 'results' / 'logs'}", err=True
+    if dry_run:
+        raise typer.Exit(
+            run_snakemake(snakefile, root, [*arguments, "--quiet", "rules", "--dry-run", *(further or [])])
         )
+    _run(snakefile, root, name, [*arguments, *(further or [])])
+    typer.echo(f"done: linepose show {name}; the report is {root / 'results' / name / 'report.html'}")
+
+
+def _run(snakefile: Path, root: Path, name: str, arguments: Sequence[str]) -> None:
+    """Run the workflow and tell one line a stage; ends the command where it fails."""
+    from rich.console import Console
+
+    from linepose.cli.snakemake_process import follow_snakemake
+    from linepose.cli.stage_lines import StageLines
+
+    console, log, lines = Console(stderr=True), root / "results" / "logs" / name / "run.log", StageLines()
+
+    def tell(line: str | None) -> None:
+        if line is not None:
+            console.print(line, markup=False, highlight=False, soft_wrap=True)
+
+    if console.is_terminal:
+        with console.status("planning") as status:
+
+            def show(bar: str = "") -> None:
+                status.update(f"{', '.join(lines.running) or 'planning'} {bar.replace('[', '(').replace(']', ')')}")
+
+            def hear(message: str) -> None:
+                tell(lines.hear(message))
+                show()
+
+            code = follow_snakemake(snakefile, root, arguments, log, hear, show)
+    else:
+        code = follow_snakemake(snakefile, root, arguments, log, lambda message: tell(lines.hear(message)))
+    if code:
+        for line in [] if lines.told_why else lines.unexplained:
+            tell(line)
+        if lines.log or not lines.told_why:
+            place = root / lines.log if lines.log else log
+            tell(f"linepose: run {name} stopped: the fault stands above, and in {place}")
         raise typer.Exit(1)
-    if not dry_run:
-        typer.echo(f"done: linepose show {name}; the report is {root / 'results' / name / 'report.html'}")
-
-
-def find_workflow(root: Path) -> Path:
-    """The Snakefile of a project, or of the clone that this package runs from; raises InputError if none."""
-    from linepose.errors import InputError
-
-    clone = Path(__file__).parents[3]
-    for folder in (root, clone):
-        if (folder / "Snakefile").is_file() and (folder / "workflow" / "rules").is_dir():
-            return folder / "Snakefile"
-    raise InputError(
-        str(root),
-        "no Snakefile",
-        "a clone of linepose, which brings the workflow",
-        "clone the repository and put this project's config/ and data/ there; without the workflow, "
-        "linepose.calibrate_platform(NAME) in Python gives pose and sigmas (docs/api.md)",
-    )

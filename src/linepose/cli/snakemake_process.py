@@ -2,28 +2,54 @@
 
 import contextlib
 import os
+import re
 import subprocess
 import sys
-from collections.abc import Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
 from linepose.pipeline.parent_process import COMMAND
 
 _PATIENCE_S: Final = 10.0
+_BAR: Final = re.compile(r"\d+%\||\d+it ")  # of tqdm
 
 
 def run_snakemake(snakefile: Path, root: Path, arguments: Sequence[str]) -> int:
     """Run a workflow in the project's folder; its exit code. It ends when this process does, however that ends."""
-    environment = os.environ | {COMMAND: str(os.getpid())}
-    child = subprocess.Popen([*_command(snakefile, root), *arguments], env=environment)
+    return _start(snakefile, root, arguments).wait()
+
+
+def follow_snakemake(
+    snakefile: Path,
+    root: Path,
+    arguments: Sequence[str],
+    log: Path,
+    hear: Callable[[str], None],
+    hear_bar: Callable[[str], None] | None = None,
+) -> int:
+    """Run a workflow as `run_snakemake` does, with its messages in a file and told one by one to `hear`.
+
+    With `hear_bar` its jobs take the error stream for a terminal and draw progress bars there, which are told to it
+    and not kept.
+    """
+    log.parent.mkdir(parents=True, exist_ok=True)
+    source, sink = os.pipe() if hear_bar is None else os.openpty()
     try:
-        return child.wait()
-    except KeyboardInterrupt:  # which a terminal sends to the child too
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            return child.wait(_PATIENCE_S)
-        child.kill()
-        return child.wait()
+        child = _start(snakefile, root, ["--nocolor", *arguments], sink)
+    finally:
+        os.close(sink)
+    with log.open("w", 1, encoding="utf-8") as file, contextlib.closing(_Source(source)) as told:
+        try:
+            _hear_all(told.pieces(), file.write, hear, hear_bar)
+            return child.wait()
+        except KeyboardInterrupt:  # which a terminal sends to the child too; it goes on telling until it has ended
+            end = threading.Timer(_PATIENCE_S, child.kill)
+            end.start()
+            _hear_all(told.pieces(), file.write, lambda _: None, None)
+            end.cancel()
+            return child.wait()
 
 
 def files_of_workflow(snakefile: Path, root: Path, arguments: Sequence[str]) -> set[str]:
@@ -31,6 +57,53 @@ def files_of_workflow(snakefile: Path, root: Path, arguments: Sequence[str]) -> 
     summary = [*_command(snakefile, root), *arguments, "--summary"]
     done = subprocess.run(summary, capture_output=True, text=True, check=False)
     return {line.split("\t")[0] for line in done.stdout.splitlines()} if done.returncode == 0 else set()
+
+
+class _Source:
+    """The reading end of a pipe or pseudo-terminal, in pieces that end in a line feed or carriage return."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+
+    def close(self) -> None:
+        os.close(self._descriptor)
+
+    def pieces(self) -> Iterator[str]:
+        rest = b""
+        while chunk := self._read():
+            *pieces, rest = re.split(rb"[\r\n]+", rest + chunk)
+            if _BAR.search(rest.decode(errors="replace")):  # its carriage return comes with the next one
+                pieces, rest = [*pieces, rest], b""
+            yield from (piece.decode(errors="replace") for piece in pieces if piece)
+        if rest:
+            yield rest.decode(errors="replace")
+
+    def _read(self) -> bytes:
+        try:
+            return os.read(self._descriptor, 65536)
+        except OSError:  # how a pseudo-terminal says that its other end is closed
+            return b""
+
+
+def _hear_all(
+    pieces: Iterator[str],
+    keep: Callable[[str], object],
+    hear: Callable[[str], None],
+    hear_bar: Callable[[str], None] | None,
+) -> None:
+    for piece in pieces:
+        if hear_bar is not None and _BAR.search(piece):
+            hear_bar(piece.strip())
+        else:
+            keep(f"{piece}\n")
+            hear(piece)
+
+
+def _start(
+    snakefile: Path, root: Path, arguments: Sequence[str], stderr: int | None = None
+) -> "subprocess.Popen[bytes]":
+    environment = os.environ | {COMMAND: str(os.getpid())}
+    return subprocess.Popen([*_command(snakefile, root), *arguments], env=environment, stderr=stderr)
 
 
 def _command(snakefile: Path, root: Path) -> list[str]:

@@ -80,28 +80,32 @@ def reject_outliers(
         remaining = remaining.select([int(n) for n in number if n != worst])
 
 
-def accepted_stage(stages: list[RejectionStage], threshold_px: float) -> int:
+def accepted_stage(
+    stages: list[RejectionStage], threshold_px: float, words: Callable[[int], str] = "observation {}".format
+) -> int:
     """Index of the first stage in which each observation's mean error is below the threshold.
 
-    Raises EstimationError where none is.
+    Raises EstimationError where none is, with the worst observation as `words` calls it by its number.
     """
     for index, stage in enumerate(stages):
         if np.nanmax(stage.error_px) < threshold_px:
             return index
     last = stages[-1]
     raise EstimationError(
-        f"outlier rejection: with {len(last.number)} observations left, observation {last.worst} still has a mean "
-        f"error of {np.nanmax(last.error_px):.1f} px, expected below {threshold_px:g} px; check the labels and the "
-        "navigation, or raise outliers.threshold_px"
+        f"outlier rejection: with {len(last.number)} observations left, {words(last.worst)} still has a mean "
+        f"error of {np.nanmax(last.error_px):.1f} px, expected below {threshold_px:g} px; check its labels and the "
+        "navigation at its time, or raise outliers.threshold_px in config/config.yaml"
     )
 
 
-def outlier_table(stages: list[RejectionStage], threshold_px: float) -> pd.DataFrame:
+def outlier_table(
+    stages: list[RejectionStage], threshold_px: float, words: Callable[[int], str] = "observation {}".format
+) -> pd.DataFrame:
     """One row an observation of a stage: its mean error, whether it is the one removed, whether the stage is accepted.
 
-    Columns as in `OUTLIERS`; the last stage removes none.
+    Columns as in `OUTLIERS`; the last stage removes none. `words` as in `accepted_stage`.
     """
-    accepted = accepted_stage(stages, threshold_px)
+    accepted = accepted_stage(stages, threshold_px, words)
     rows = []
     for index, stage in enumerate(stages):
         pose = stage.optimum.parameters[:N_PARAMETERS]

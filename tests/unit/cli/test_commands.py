@@ -12,7 +12,7 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from linepose.cli import run as run_command
+from linepose.cli import workflow_files
 from linepose.cli.app import app
 from linepose.cli.check import _without_warnings
 from linepose.config.platform import load_platform
@@ -197,7 +197,7 @@ def test_unknown_platform_is_one_line_that_lists_the_known(mine, command):
 def test_run_starts_snakemake_for_this_platform_only(mine, monkeypatch):
     started = []
 
-    def start(command, env):
+    def start(command, env, stderr):
         started.append(command)
         assert env["LINEPOSE_RUN_PROCESS"] == str(os.getpid())  # with which it ends
         return SimpleNamespace(wait=lambda: 0)
@@ -215,7 +215,7 @@ def test_run_starts_snakemake_for_this_platform_only(mine, monkeypatch):
 
 
 def test_run_that_fails_ends_with_one(mine, monkeypatch):
-    monkeypatch.setattr(subprocess, "Popen", lambda command, env: SimpleNamespace(wait=lambda: 1))
+    monkeypatch.setattr(subprocess, "Popen", lambda command, env, stderr: SimpleNamespace(wait=lambda: 1))
     result = given("run", "mine")
     assert result.exit_code == 1
     assert "results/logs" in one_line(result)
@@ -232,7 +232,7 @@ def test_run_ends_where_another_is_at_work(mine, monkeypatch):
 
 
 def test_run_without_the_workflow_says_where_it_is(mine, monkeypatch, tmp_path):
-    monkeypatch.setattr(run_command, "__file__", str(tmp_path / "site-packages" / "linepose" / "cli" / "run.py"))
+    monkeypatch.setattr(workflow_files, "__file__", str(tmp_path / "site-packages" / "linepose" / "cli" / "x.py"))
     result = given("run", "mine")
     assert result.exit_code == 1
     assert "clone the repository" in one_line(result)

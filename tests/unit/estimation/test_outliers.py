@@ -87,8 +87,14 @@ def test_no_accepted_stage_is_told(stages):
         accepted_stage(stages, 0.5)
     assert str(error.value) == (
         f"outlier rejection: with 4 observations left, observation {worst} still has a mean error of "
-        f"{error_px:.1f} px, expected below 0.5 px; check the labels and the navigation, or raise outliers.threshold_px"
+        f"{error_px:.1f} px, expected below 0.5 px; check its labels and the navigation at its time, or raise "
+        "outliers.threshold_px in config/config.yaml"
     )
+
+
+def test_worst_observation_is_told_in_the_callers_words(stages):
+    with pytest.raises(EstimationError, match=rf"left, view {stages[-1].worst}\.csv still has"):
+        outlier_table(stages, 0.5, "view {}.csv".format)
 
 
 def test_survey_without_any_error_is_told(function_likelihood):

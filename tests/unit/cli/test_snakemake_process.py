@@ -1,0 +1,44 @@
+"""What a child process tells is kept in a file and heard; progress bars are heard alone."""
+
+import sys
+
+import pytest
+
+from linepose.cli import snakemake_process
+from linepose.cli.snakemake_process import follow_snakemake
+
+CHILD = """
+import sys
+print("terminal" if sys.stderr.isatty() else "pipe", file=sys.stderr)
+for step in (1, 2):
+    print(f"\\r {step}0%|#   | {step}/10", end="", file=sys.stderr)
+print("\\nlast words", end="", file=sys.stderr)
+sys.exit(3)
+"""
+
+
+@pytest.fixture
+def child(monkeypatch, tmp_path):
+    """Follows a process that prints, in the place of Snakemake; its exit code."""
+    monkeypatch.setattr(snakemake_process, "_command", lambda snakefile, root: [sys.executable, "-c", CHILD])
+
+    def follow(hear, hear_bar=None):
+        return follow_snakemake(tmp_path / "Snakefile", tmp_path, [], tmp_path / "logs" / "run.log", hear, hear_bar)
+
+    return follow
+
+
+def test_messages_are_heard_and_kept(child, tmp_path):
+    heard = []
+    assert child(heard.append) == 3
+    assert heard[0] == "pipe"
+    assert heard[-1] == "last words"
+    assert (tmp_path / "logs" / "run.log").read_text().splitlines() == heard
+
+
+def test_bars_are_drawn_for_a_terminal_and_not_kept(child, tmp_path):
+    heard, bars = [], []
+    assert child(heard.append, bars.append) == 3
+    assert heard == ["terminal", "last words"]
+    assert bars == ["10%|#   | 1/10", "20%|#   | 2/10"]
+    assert (tmp_path / "logs" / "run.log").read_text().splitlines() == heard
