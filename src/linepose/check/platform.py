@@ -26,6 +26,7 @@ from linepose.config.study import check_study
 from linepose.errors import InputError, LineposeError
 from linepose.experiments.registry import compared_platforms, experiment_faults
 from linepose.geometry.pose import N_PARAMETERS
+from linepose.inputs.navigation.covariance_file import read_covariances
 from linepose.inputs.number_files import read_numbers
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.pipeline.load import read_log, read_reported, with_navigation
@@ -200,7 +201,11 @@ def _navigation_findings(
     """Findings on navigation log, covariances, and their times against those of the points."""
     findings: list[Finding] = []
     log = _attempt(read_log, settings, folder, "navigation log", findings) if _has_log(settings) else None
-    reported = _attempt(read_reported, settings, folder, "covariances", findings)
+    reported = None
+    if log is not None or not _has_log(settings):
+        reported = _attempt(read_reported, settings, folder, "covariances", findings)
+    elif settings.source.covariances is not None:  # the log's fault is told once
+        reported = _attempt(_read_covariance_file, settings, folder, "covariances", findings)
     if reported is not None:
         findings += covariances.size_findings(reported)
         if settings.source.covariances is not None:
@@ -223,6 +228,10 @@ def _navigation_findings(
 
 def _has_log(settings: Platform) -> bool:
     return isinstance(settings.source, ScansSection)
+
+
+def _read_covariance_file(settings: Platform, folder: Path) -> NavigationCovariances:
+    return read_covariances(folder / (settings.source.covariances or ""), settings.navigation.covariance_columns)
 
 
 def _attempt(

@@ -7,6 +7,7 @@ import typer
 import linepose
 from linepose.cli import check, export, label, new, run, show
 from linepose.cli.faults import OneLineFaults
+from linepose.cli.three_numbers import ThreeNumbers
 
 app = typer.Typer(
     name="linepose",
@@ -38,7 +39,7 @@ def options(
     """Options that stand before a command; the program's help stands above."""
 
 
-app.command(name="new")(new.new)
+app.command(name="new", cls=ThreeNumbers)(new.new)
 app.command(name="label")(label.label)
 app.command(name="check")(check.check)
 app.command(name="run")(run.run)

@@ -1,12 +1,16 @@
 """`linepose check NAME`: everything that can be known before a run, all findings at once."""
 
 import logging
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Final
 
 import typer
 
 from linepose.cli.options import HERE, Name, ProjectFolder
+
+_PATIENCE_S: Final = 3.0
 
 
 def check(name: Name, project: ProjectFolder = HERE) -> None:
@@ -24,10 +28,7 @@ def check(name: Name, project: ProjectFolder = HERE) -> None:
 
     root = find_project(project)
     console = Console()
-    with (
-        _without_warnings(),
-        Console(stderr=True).status("checking (the first time, a minute to compile)", spinner="dots"),
-    ):
+    with _without_warnings(), _patience():
         report = check_platform(name, root)
     if console.is_terminal:
         console.print(findings_table(report))
@@ -39,6 +40,21 @@ def check(name: Name, project: ProjectFolder = HERE) -> None:
             typer.echo(line)
     if report.level == Level.ERROR:
         raise typer.Exit(1)
+
+
+@contextmanager
+def _patience() -> Iterator[None]:
+    """In a terminal, say on the error stream that work goes on, and after some seconds why it may take longer."""
+    from rich.console import Console
+
+    told = "checking (after an installation or an update, kernels are compiled first: about half a minute)"
+    with Console(stderr=True).status("checking") as status:
+        longer = threading.Timer(_PATIENCE_S, status.update, [told])
+        longer.start()
+        try:
+            yield
+        finally:
+            longer.cancel()
 
 
 @contextmanager

@@ -62,7 +62,8 @@ def new(
 
     Asks for what the options leave out. In a folder without a project, a minimal one is made.
     """
-    from linepose.config.new_platform import NewPlatform, check_name, write_platform
+    from linepose.config.new_platform import NewPlatform, check_name, files_of_source, write_platform
+    from linepose.config.platform import load_platform
 
     check_name(name)
     needed = (focal_length_mm, pixel_pitch_um, pixels, position_m, euler_deg)
@@ -91,7 +92,6 @@ def new(
         ask = f"Navigation log ({', '.join(FORMATS.names())})"
         navigation_format = _given(None, "--navigation-format", ask, str, "table")
     sigmas = {"sigma_position_m": sigma_position_m, "sigma_rotation_deg": sigma_rotation_deg}
-    plain_table = navigation_format in {None, "", "table"}
     path = write_platform(
         platforms,
         NewPlatform(
@@ -106,14 +106,16 @@ def new(
             **{name: value for name, value in sigmas.items() if value is not None},
             source=source or "labelled_views",
             dataset=dataset or name,
-            navigation_format="" if plain_table else navigation_format or "",
+            navigation_format=navigation_format or "",
             navigation=navigation or "",
         ),
         force,
     )
     typer.echo(f"wrote {path}")
     _add_to_project(root, name)
-    typer.echo(f"next: put the platform's files in {root / 'data' / (dataset or name)}, then linepose check {name}")
+    files = ", ".join(files_of_source(load_platform(platforms, name).source))
+    typer.echo(f"next: put {files} into {root / 'data' / (dataset or name)}; {path.name} says what each must hold")
+    typer.echo(f"then: linepose check {name}")
 
 
 def _places(project: Path) -> tuple[Path, Path]:

@@ -31,5 +31,10 @@ def show(name: Name, project: ProjectFolder = HERE) -> None:
     else:
         for line in plain_lines(summary, removed):
             typer.echo(line)
-    typer.echo(f"tables {folder}/*.parquet, figures {folder / 'figures'}, report {folder / 'report.html'}")
+    made = {"figures": folder / "figures", "report": folder / "report.html"}
+    typer.echo(
+        ", ".join([f"tables {folder}/*.parquet", *(f"{what} {path}" for what, path in made.items() if path.exists())])
+    )
+    if missing := [what for what, path in made.items() if not path.exists()]:
+        typer.echo(f"not made yet: {' and '.join(missing)}; the run goes on with: linepose run {name}")
     typer.echo(f"take it away: linepose export {name} --format urdf")

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from typing import Any, Final, Literal, get_args, get_origin
 
 import yaml
 
@@ -12,8 +12,10 @@ from linepose.config.platform import NavigationSection, Platform
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT
 from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.inputs.navigation.format import NavigationFormatSection
 from linepose.inputs.navigation.registry import FORMATS
-from linepose.settings import validated
+from linepose.inputs.source import LabelledViewsSection, ScansSection
+from linepose.settings import Settings, validated
 from linepose.survey.hand_measured import HandMeasured
 from linepose.tables import atomic_write
 
@@ -83,6 +85,16 @@ def write_platform(folder: Path, new: NewPlatform, overwrite: bool = False) -> P
     with atomic_write(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return path
+
+
+def files_of_source(source: LabelledViewsSection | ScansSection) -> list[str]:
+    """The files, or patterns of files, that a source names."""
+    if isinstance(source, LabelledViewsSection):
+        return [source.views, source.covariances]
+    navigation = source.navigation
+    named = [source.scans, source.labels if source.points == "labels" else None]
+    named += [navigation if isinstance(navigation, str) else navigation.file, source.covariances]
+    return [name for name in named if name is not None]
 
 
 def _head(new: NewPlatform) -> list[str]:
@@ -163,16 +175,39 @@ def _source(new: NewPlatform) -> list[str]:
     ]
     if not new.navigation_format:
         log = new.navigation or "navigation.csv"
-        lines.append(f"  navigation: {_quoted(log)} # time_us, north_m, east_m, down_m, roll_rad, pitch_rad, yaw_rad")
+        lines += [
+            "  # columns time_us (microseconds since 1970), north_m, east_m, down_m, roll_rad, pitch_rad, yaw_rad;",
+            "  # a log with other columns or units: linepose new --navigation-format table, or docs/formats.md",
+            f"  navigation: {_quoted(log)}",
+        ]
     else:
         lines += [
-            "  navigation: # further keys of each format: docs/formats.md",
+            "  navigation: # what each key means: docs/formats.md",
             f"    format: {new.navigation_format}",
             f"    file: {_quoted(new.navigation or 'navigation.*')} # below the data set's folder",
+            *_format_keys(FORMATS.member(new.navigation_format).section),
         ]
     if not new.navigation_format or not FORMATS.member(new.navigation_format).has_covariances:
         lines.append("  covariances: covariances.csv # rows of time (us) and the row-major 12x12 covariance")
     return lines
+
+
+def _format_keys(section: type[NavigationFormatSection]) -> list[str]:
+    """The keys of a navigation format that have a default, each with what it may be."""
+    lines = []
+    for key, field in section.model_fields.items():
+        value = field.get_default(call_default_factory=True)
+        if isinstance(value, Settings):
+            value = value.model_dump(mode="json", exclude_none=True)
+        if key not in NavigationFormatSection.model_fields and value is not None and not field.is_required():
+            about = f"{_choices(field.annotation)}{field.description or ''}".rstrip(".")
+            lines.append(f"    {key}: {_quoted(value)} # {about}")
+    return lines
+
+
+def _choices(annotation: Any) -> str:
+    """The values that a key may have, where they are few: "s, ms, us, ns: "."""
+    return f"{', '.join(get_args(annotation))}: " if get_origin(annotation) is Literal else ""
 
 
 def _experiments() -> list[str]:
@@ -199,8 +234,7 @@ def _triple(values: Triple) -> str:
     return f"[{', '.join(_number(value) for value in values)}]"
 
 
-def _quoted(text: str) -> str:
-    """A text as YAML, in quotes where it needs them."""
-    return (
-        yaml.safe_dump(text, default_flow_style=True, width=10_000).removesuffix("\n").removesuffix("...").rstrip("\n")
-    )
+def _quoted(value: Any) -> str:
+    """A value as YAML on one row; a text in quotes where it needs them."""
+    text: str = yaml.safe_dump(value, default_flow_style=True, width=10_000, sort_keys=False)
+    return text.removesuffix("\n").removesuffix("...").rstrip("\n")

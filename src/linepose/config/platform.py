@@ -159,9 +159,21 @@ def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:
     path = folder / f"{name}.yaml"
     if name in seen:
         raise InputError(f"{path}: like", f"a circle {' -> '.join([*seen, name])}", "an end", "remove one `like`")
+    if not path.is_file():
+        raise _no_such_platform(path, seen)
     values = read_yaml(path)
     parent = values.pop("like", None)
     return values if parent is None else _overlaid(_merged_values(folder, parent, [*seen, name]), values)
+
+
+def _no_such_platform(path: Path, named_by: list[str]) -> InputError:
+    known = sorted(file.stem for file in path.parent.glob("*.yaml"))
+    near = difflib.get_close_matches(path.stem, known, n=1)
+    remedy = f"did you mean {near[0]}? If not, " if near else "correct the name, or "
+    remedy += f"write it with `linepose new {path.stem}`"
+    if named_by:
+        remedy = f"correct `like` in {named_by[-1]}.yaml"
+    return InputError(str(path), "no such platform", f"one of {', '.join(known) or 'none'}", remedy)
 
 
 def _overlaid(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:

@@ -44,7 +44,9 @@ class Camera(Settings):
     focal_length_m: PositiveFloat = Field(description="Focal length (m).")
     pixel_pitch_m: PositiveFloat = Field(description="Width of a pixel on the sensor (m).")
     n_pixels: PositiveInt = Field(description="Pixels of a scan line.")
-    principal_point_px: float = Field(description="Where the optical axis meets the line (px, counted from 0).")
+    principal_point_px: float = Field(
+        description="Where the optical axis meets the line (px from the centre of the first pixel)."
+    )
     k1: float = Field(0.0, description="First radial distortion coefficient (no unit).")
     k2: float = Field(0.0, description="Second radial distortion coefficient (no unit).")
     sigmas: CameraSigmas = Field(CameraSigmas(), description="One standard deviation of each.")

@@ -44,6 +44,15 @@ def settings(root, **changes):
     path.write_text(yaml.safe_dump(values))
 
 
+def test_missing_navigation_log_is_told_once(scans):
+    (scans / "data" / "mine" / "navigation.parquet").unlink()
+    told = [finding.found for finding in check_platform("mine", scans).of(Level.ERROR)]
+    assert len(told) == 1
+    assert "navigation.parquet" in told[0]
+    (scans / "data" / "mine" / "covariances.csv").unlink()
+    assert len(check_platform("mine", scans).of(Level.ERROR)) == 2
+
+
 def in_gps_time(root):
     for path in (root / "data" / "mine" / "scans").glob("*-times.csv"):
         (pd.read_csv(path) + 18_000_000).to_csv(path, index=False)

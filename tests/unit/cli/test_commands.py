@@ -92,6 +92,38 @@ def test_new_takes_every_navigation_format(here, name):
     assert source.covariances == ("covariances.csv" if name == "resonon" else None)  # its logs hold none
 
 
+@pytest.mark.parametrize(
+    ("option", "numbers", "told"),
+    [
+        ("--position-m", ["0.2", "0"], "--position-m: found 0.2 0, expected three numbers: forward right down (m)"),
+        ("--euler-deg", ["-56"], "--euler-deg: found -56, expected three numbers: roll pitch yaw (deg)"),
+        ("--euler-deg", ["1", "2", "3", "4"], "found 1 2 3 4, expected three"),
+    ],
+)
+def test_new_with_a_wrong_count_of_numbers_says_which_three(here, option, numbers, told):
+    assert told in one_line(given("new", "mine", option, *numbers, *GIVEN[:6]))
+
+
+@pytest.mark.parametrize(
+    ("options", "column", "files"),
+    [
+        ([], "time_us (microseconds since 1970), north_m", "scans/*.hdr, labels.csv, navigation.csv, covariances.csv"),
+        (
+            ["--navigation-format", "table", "--navigation", "log.csv"],
+            "columns: {time: time_us, position: [north_m, east_m, down_m]",
+            "scans/*.hdr, labels.csv, log.csv, covariances.csv",
+        ),
+    ],
+)
+def test_new_says_which_columns_and_files_it_expects(here, options, column, files):
+    result = given("new", "mine", *GIVEN, "--source", "scans", *options)
+    text = (here / "config" / "platforms" / "mine.yaml").read_text()
+    assert column in text
+    assert ("angle_unit: radians # degrees, radians: Of roll" in text) == bool(options)
+    assert f"next: put {files} into {here / 'data' / 'mine'}; mine.yaml says" in result.stdout
+    assert result.stdout.endswith("then: linepose check mine\n")
+
+
 def test_new_lists_the_formats_for_an_unknown_one(here):
     result = given("new", "mine", *GIVEN, "--source", "scans", "--navigation-format", "sbett")
     assert "did you mean sbet?" in one_line(result)
@@ -191,7 +223,9 @@ def test_outside_a_project_every_command_says_what_to_do(here, command):
 @pytest.mark.parametrize("command", ["run", "show", "export", "label"])
 def test_unknown_platform_is_one_line_that_lists_the_known(mine, command):
     arguments = ["--format", "urdf"] if command == "export" else []
-    assert "expected one of mine" in one_line(given(command, "yours", *arguments))
+    told = one_line(given(command, "yours", *arguments))
+    assert "expected one of mine; correct the name, or write it with `linepose new yours`" in told
+    assert "did you mean mine?" in one_line(given(command, "nine", *arguments))
 
 
 def test_run_starts_snakemake_for_this_platform_only(mine, monkeypatch):
@@ -222,7 +256,9 @@ def test_run_that_fails_ends_with_one(mine, monkeypatch):
 
 
 def test_run_ends_where_another_is_at_work(mine, monkeypatch):
+    """Before anything else is looked at."""
     (mine / ".snakemake").mkdir()
+    (mine / "config" / "platforms" / "mine.yaml").unlink()
     with (mine / ".snakemake" / "linepose-run.lock").open("w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
         monkeypatch.setattr(subprocess, "Popen", None)
@@ -261,7 +297,17 @@ def test_show_tells_pose_verdict_and_where_files_are(finished):
     assert any(line.startswith("roll") and "deg" in line for line in lines)
     assert any("4 of 6 observations accepted" in line for line in lines)
     assert any("removed: " in line for line in lines)
-    assert str(finished / "results" / "mine" / "figures") in result.stdout
+    assert "not made yet: figures and report; the run goes on with: linepose run mine" in lines
+    assert "report.html" not in result.stdout
+
+
+def test_show_names_figures_and_report_once_they_are_there(finished):
+    folder = finished / "results" / "mine"
+    (folder / "figures").mkdir()
+    (folder / "report.html").touch()
+    told = given("show", "mine").stdout
+    assert f"figures {folder / 'figures'}, report {folder / 'report.html'}" in told
+    assert "not made yet" not in told
 
 
 def test_show_before_a_run_says_what_to_do(mine):

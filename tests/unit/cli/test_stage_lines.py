@@ -60,7 +60,8 @@ def test_stages_are_counted_and_each_is_one_line_with_its_last_word(lines):
     assert told(lines, PLANNED) == ["2 stages to run"]
     assert told(lines, BEGUN.format("check_data") + BEGUN.format("optimise")) == []
     assert lines.running == ["check_data", "optimise"]
-    said = "linepose.optimise: all: -log L 3\nlinepose.optimise: inliers: -log L 1\nlinepose.experiments.check_data: 13 files\n"
+    said = "linepose.optimise: all: -log L 3\nlinepose.optimise: inliers: -log L 1\n"
+    said += "linepose.experiments.check_data: 13 files\n"
     assert told(lines, said + FINISHED.format("optimise")) == ["1/2 optimise: inliers: -log L 1"]
     assert lines.running == ["check_data"]
     assert told(lines, FINISHED.format("check_data") + FINISHED.format("all")) == ["2/2 check_data: 13 files"]

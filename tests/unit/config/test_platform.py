@@ -111,19 +111,23 @@ def test_missing_file_lists_the_names_there_are(folder):
     folder("robot", VALUES)
     path = folder("rover", VALUES)
     assert message_of(path, "robt") == (
-        f"{path}/robt.yaml: found no such file, expected one of robot, rover; create it or correct the name"
+        f"{path}/robt.yaml: found no such platform, expected one of robot, rover; did you mean robot? If not, write it "
+        "with `linepose new robt`"
     )
 
 
 def test_missing_file_among_none(tmp_path):
     assert message_of(tmp_path, "robot") == (
-        f"{tmp_path}/robot.yaml: found no such file, expected one of none; create it or correct the name"
+        f"{tmp_path}/robot.yaml: found no such platform, expected one of none; correct the name, or write it with "
+        "`linepose new robot`"
     )
 
 
 def test_missing_like_is_named(folder):
     path = folder("robot", {"like": "rover"})
-    assert message_of(path, "robot").startswith(f"{path}/rover.yaml: found no such file, expected one of robot;")
+    assert message_of(path, "robot") == (
+        f"{path}/rover.yaml: found no such platform, expected one of robot; correct `like` in robot.yaml"
+    )
 
 
 @pytest.mark.parametrize(

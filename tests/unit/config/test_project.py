@@ -68,7 +68,8 @@ def test_platform_that_is_nowhere(root):
     with pytest.raises(InputError) as error:
         load_project(STUDY | {"platforms": ["robot", "rover"]}, root)
     assert str(error.value) == (
-        f"{root}/config/platforms/rover.yaml: found no such file, expected one of robot; create it or correct the name"
+        f"{root}/config/platforms/rover.yaml: found no such platform, expected one of robot; correct the name, "
+        "or write it with `linepose new rover`"
     )
 
 
