@@ -40,7 +40,8 @@ def run(
         check_no_run(root)
     loaded = load_platform_project(name, root, compared_platforms)
     snakefile = find_workflow(root)
-    arguments = ["--cores", str(cores or "all"), "--quiet", "host", "--config", f'platforms=["{name}"]']
+    quiet = ["--quiet", "host", *(["rules"] if dry_run else [])]
+    arguments = ["--cores", str(cores or "all"), *quiet, "--config", f'platforms=["{name}"]']
     outdated = all_outdated(loaded, root, name, snakefile.parent / "scripts")
     if outdated:
         typer.echo(f"{'would be made again' if dry_run else 'made again'}: {told(outdated)}", err=True)
@@ -49,9 +50,7 @@ def run(
         if forced := sorted(wanted.intersection(outputs)):
             arguments += ["--forcerun", *forced]
     if dry_run:
-        raise typer.Exit(
-            run_snakemake(snakefile, root, [*arguments, "--quiet", "rules", "--dry-run", *(further or [])])
-        )
+        raise typer.Exit(run_snakemake(snakefile, root, [*arguments, "--dry-run", *(further or [])]))
     _run(snakefile, root, name, [*arguments, *(further or [])])
     typer.echo(f"done: linepose show {name}; the report is {root / 'results' / name / 'report.html'}")
 
