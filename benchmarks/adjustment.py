@@ -1,7 +1,10 @@
-"""The adjustment measured: time of a pass and of a survey, how time grows with measurements, halves of the field data.
+"""The adjustment measured: time of a pass and of a survey, how time grows with measurements, other programs.
+
+And how far halves of the field data lie apart.
 
     python benchmarks/adjustment.py speed
     python benchmarks/adjustment.py growth --measurements 1000 10000 100000
+    python benchmarks/adjustment.py prior-art
     python benchmarks/adjustment.py halves --surveys 200 --seed 1
 
 Processor time beside wall time, because only the former is repeatable on a busy machine. Seeds that were used while
@@ -19,6 +22,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
+from prior_art import prior_art
 from unit.adjustment import strips, timed_survey
 from unit.likelihood import field_data
 
@@ -107,7 +111,7 @@ def halves(n_splits: int, seed: int) -> None:
 def main() -> None:
     """Measure what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("what", choices=("speed", "growth", "halves"))
+    parser.add_argument("what", choices=("speed", "growth", "prior-art", "halves"))
     parser.add_argument("--surveys", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--measurements", type=int, nargs="+", default=[1000, 10_000, 100_000])
@@ -116,6 +120,8 @@ def main() -> None:
         speed()
     elif asked.what == "growth":
         growth(asked.measurements)
+    elif asked.what == "prior-art":
+        prior_art()
     else:
         halves(asked.surveys, asked.seed)
 
