@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from linepose.config.platform import load_platform, read_yaml
+from linepose.estimation.likelihood_estimator import LikelihoodEstimator
 from linepose.experiments.basin import BASIN, BasinSettings, Sweep
 from linepose.experiments.splits import SPLITS, random_splits
 from linepose.likelihood.published import PublishedLikelihood
@@ -58,7 +59,9 @@ def main() -> None:
     likelihood = PublishedLikelihood(surveys.field_survey().select(list(surveys.INLIERS)), platform.intrinsics())
     likelihood.log_likelihood(pose)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    share = kernel_share(Sweep(likelihood, pose, covariance, BasinSettings(n_distances=4, n_angles=5), 1), range(20))
+    share = kernel_share(
+        Sweep(LikelihoodEstimator(likelihood), pose, covariance, BasinSettings(n_distances=4, n_angles=5), 1), range(20)
+    )
     print(f"Experiments on the 16 inliers; {cores} cores, wall time")
     print(f"(the kernel has {100 * share:.0f} % of the basin's processor time with Powell's method, to reach: 80 %)\n")
     line("", "runs", "seconds", "ms each", "to reach, s")
@@ -66,7 +69,7 @@ def main() -> None:
         ranges = batch_ranges(200, 10)
         begun = time.perf_counter()
         run_batches(
-            lambda name: random_splits(likelihood, pose, 8, ranges[name], 1),
+            lambda name: random_splits(LikelihoodEstimator(likelihood), pose, 8, ranges[name], 1),
             list(ranges),
             Path(folder) / "splits",
             SPLITS,
@@ -76,7 +79,9 @@ def main() -> None:
         line("splits", 200, f"{seconds:.1f}", f"{5 * seconds:.0f}", TO_REACH_S["splits"])
         for optimiser in ("powell", "wide"):
             for size in GRIDS:
-                sweep = Sweep(likelihood, pose, covariance, BasinSettings(n_distances=size, n_angles=size), 1)
+                sweep = Sweep(
+                    LikelihoodEstimator(likelihood), pose, covariance, BasinSettings(n_distances=size, n_angles=size), 1
+                )
                 cells = batch_ranges(size**2, 15)
                 begun = time.perf_counter()
                 run_batches(

@@ -1,8 +1,8 @@
 """Which motions give which parameter: sigmas of the pose over layouts of a survey; a Markdown table on the terminal.
 
 `python benchmarks/survey_design.py [SURVEYS]`. Sixteen views with the simulated Ladybird's camera, navigation and
-reported covariances. Each layout is simulated SURVEYS times (default 20) with errors alike in a view, and the pose
-estimated with the shared-error model: the table has the root mean square error against the truth.
+reported covariances. Each layout is simulated SURVEYS times (default 20) and adjusted without the hand measurement as a
+prior: the table has the root mean square error against the truth.
 """
 
 import sys
@@ -12,10 +12,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from linepose.likelihood.shared import SharedLikelihood
 
+from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.config.platform import load_platform
-from linepose.estimation.optimise import optimise
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import pose_difference
 from linepose.simulation.settings import GroundSettings, PassSettings, SimulationSettings, WaveSettings
@@ -61,7 +60,7 @@ def layouts(base: SimulationSettings) -> dict[str, SimulationSettings]:
 def error(camera: Camera, settings: SimulationSettings, start: np.ndarray, seed: int) -> np.ndarray:
     """Estimate less truth of one simulated survey (6,): m along the body's axes, rad about them."""
     survey, _ = simulate_survey(camera, settings, seed)
-    pose = optimise(SharedLikelihood(survey, camera), start).parameters[:6]
+    pose = adjust(survey, camera, start, settings=AdjustmentSettings(hand_measured_prior=False, n_draws=10)).pose
     return pose_difference(pose, np.array(settings.true_pose))
 
 

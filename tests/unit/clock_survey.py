@@ -19,7 +19,6 @@ from linepose.survey.navigation_log import NavigationLog, associate_poses, inter
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS, Survey, survey_from_table
 
 MAXIMUM_S = 0.1
-NO_START = np.zeros(6)  # only the balanced model needs one
 
 
 def honest(settings: SimulationSettings) -> SimulationSettings:
@@ -75,4 +74,4 @@ def likelihood(
     camera: Camera, survey: Survey, log: NavigationLog, maximum_s: float = MAXIMUM_S, noise_model: str = "published"
 ) -> ClockOffsetLikelihood:
     """The noise model of the survey with the offset, up to 100 ms unless said otherwise."""
-    return with_clock_offset(survey, log, maximum_s, lambda one: likelihood_of(noise_model, one, camera, NO_START))
+    return with_clock_offset(survey, log, maximum_s, lambda one: likelihood_of(noise_model, one, camera))

@@ -4,8 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from linepose.experiments.consistency import CONSISTENCY, CONSISTENCY_SUMMARY, summarise_consistency
-from linepose.experiments.noise_models import EXTRA_PARAMETERS, IDENTIFIABILITY, NOISE_MODELS, WEIGHTS
 
 from linepose.config.platform import Platform
 from linepose.estimation.outliers import OUTLIERS
@@ -13,7 +11,7 @@ from linepose.experiments.basin import BASIN, BASIN_SUMMARY, START_COLUMNS, Regi
 from linepose.experiments.clock_offset import CLOCK_OFFSET, CORRELATION_COLUMNS
 from linepose.experiments.leave_one_out import LEAVE_ONE_OUT
 from linepose.experiments.mapping import MAPPING, MAPPING_SUMMARY, PROJECTED_COLUMNS, PROJECTED_COVARIANCE_COLUMNS
-from linepose.experiments.prior import PRIOR_TABLE
+from linepose.experiments.prior import IDENTIFIABILITY, PRIOR_TABLE
 from linepose.experiments.splits import SPLITS
 from linepose.experiments.uncertainty import UNCERTAINTY
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
@@ -31,10 +29,10 @@ N_STEPS, N_WALKERS = 20, 16
 PLATFORM = {
     "description": "A made-up platform",
     "noise_model": "published",
+    "prior": "none",
     "camera": {"focal_length_m": 8.2e-3, "pixel_pitch_m": 7.4e-6, "n_pixels": 648, "principal_point_px": 323.0},
     "hand_measured": {"position_m": [0.2, 0.0, -0.8], "euler_deg": [-56.0, 0.0, -90.0]},
     "source": {"kind": "labelled_views", "dataset": "made_up"},
-    "experiments": {"noise_models": {}},
     "outline": {
         "side": {"lines": [[[-1.0, 0.5], [1.0, 0.5], [0.0, -0.7], [-1.0, 0.5]]], "circles": [[0.5, 0.7, 0.2]]},
         "front": {"lines": [[[-0.7, 0.5], [0.7, 0.5]]]},
@@ -151,7 +149,8 @@ def diagnostics() -> pd.DataFrame:
         }
         for k, name in enumerate(POSE_COLUMNS)
     ]
-    return pd.DataFrame(rows)
+    unknown = dict.fromkeys(("pareto_shape", "least_eigenvalue", "disagreement_sigmas"), np.nan)
+    return pd.DataFrame(rows).assign(**unknown)
 
 
 def residuals() -> pd.DataFrame:
@@ -251,68 +250,13 @@ def uncertainty() -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def noise_models() -> pd.DataFrame:
-    """Four models on two sets: the published one is off by 0.14 m to the left, the robust one 2 sigmas away."""
-    rows = []
-    for model, moved in (("published", -0.14), ("shared", 0.0), ("balanced", 0.01), ("robust", 0.02)):
-        for name, count in (("all", 6), ("inliers", 4)):
-            pose = OPTIMUM + np.array([0.0, moved, 0.0, 0.0, 0.0, 0.0])
-            levels = {"shared_level": 0.5, "white_level": 0.03, "pixel_level": 2.3}
-            known = model != "published"
-            rows.append(
-                {
-                    "noise_model": model,
-                    "set": name,
-                    "n_observations": count,
-                    "observations": "1 2 3 4",
-                    **dict(zip(POSE_COLUMNS, pose, strict=True)),
-                    **dict(zip(SIGMA_COLUMNS, SIGMA, strict=True)),
-                    **dict.fromkeys(EXTRA_PARAMETERS, 0.1 if known else np.nan),
-                    **{
-                        f"{level}{end}": factor * value if known else np.nan
-                        for level, value in levels.items()
-                        for end, factor in (("", 1.0), ("_low", 0.8), ("_high", 1.25))
-                    },
-                    "mahalanobis": 2.1 if model == "robust" else 0.0,
-                }
-            )
-    same = {"neg_log_likelihood": 1.0, "n_evaluations": 9, "effective_sample_size": 3000.0, "split_r_hat": 1.005}
-    same |= {"distance_m": 0.1, "angle_rad": 0.01, "warning": ""}
-    return pd.DataFrame(rows).assign(**same, position_error_m=np.nan, rotation_error_rad=np.nan, error_in_sigmas=np.nan)
-
-
 def identifiability() -> pd.DataFrame:
-    """The focal length is what the data say least of."""
-    names = (*POSE_COLUMNS[:3], "roll_rad", "pitch_rad", "yaw_rad", *EXTRA_PARAMETERS)
-    direction = np.array([0.3, *[0.0] * 9, -0.95])
-    table = pd.DataFrame({"parameter": names, "prior_sigma": 1.0, "posterior_sigma": np.linspace(0.1, 0.9, 11)})
+    """The height is what the data say least of."""
+    names = (*POSE_COLUMNS[:3], "roll_rad", "pitch_rad", "yaw_rad")
+    direction = np.array([0.3, 0.0, -0.95, 0.0, 0.0, 0.0])
+    table = pd.DataFrame({"parameter": names, "prior_sigma": 1.0, "posterior_sigma": np.linspace(0.1, 0.9, 6)})
     table = table.assign(shrinkage=1 - table["posterior_sigma"] ** 2, weakest_direction=direction)
-    return table.assign(weakest_shrinkage=0.1, weakest_in_words="the focal length against r_x")
-
-
-def weights() -> pd.DataFrame:
-    """Observation 6 has the lowest weight, point 2 of observation 1 the lowest of points."""
-    observation, point = (grid.ravel() for grid in np.meshgrid(np.arange(1, 7), np.arange(4), indexing="ij"))
-    own = np.where((observation == 1) & (point == 2), 0.05, 1.1)
-    table = pd.DataFrame({"observation": observation, "point": point, "point_weight": own})
-    return table.assign(view_weight=1.3 - 0.2 * observation, removed=observation > 4)
-
-
-def consistency() -> pd.DataFrame:
-    """Forty halves and one pair: 4 sigmas apart under the published model, 2.5 under the shared one."""
-    halves = splits().drop(columns=["split", "mahalanobis"]).iloc[0].to_dict()
-    rows = [
-        {"noise_model": model, "comparison": name, "split": index, **halves, "mahalanobis": middle + 0.02 * index}
-        for model, middle in (("published", 4.0), ("shared", 2.5))
-        for name, count in (("random halves of made-up", 40), ("made-up against other", 1))
-        for index in range(count)
-    ]
-    return pd.DataFrame(rows)
-
-
-def consistency_summary() -> pd.DataFrame:
-    """What these distances come to."""
-    return summarise_consistency(consistency())
+    return table.assign(weakest_shrinkage=0.1, weakest_in_words="r_z against r_x")
 
 
 def prior() -> pd.DataFrame:
@@ -358,11 +302,7 @@ TABLES = {
     "splits": (splits, SPLITS),
     "leave_one_out": (leave_one_out, LEAVE_ONE_OUT),
     "uncertainty": (uncertainty, UNCERTAINTY),
-    "noise_models": (noise_models, NOISE_MODELS),
     "identifiability": (identifiability, IDENTIFIABILITY),
-    "weights": (weights, WEIGHTS),
-    "consistency": (consistency, CONSISTENCY),
-    "consistency_summary": (consistency_summary, CONSISTENCY_SUMMARY),
 }
 
 

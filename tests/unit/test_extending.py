@@ -28,12 +28,12 @@ IN_USE = """
 from pathlib import Path
 
 from linepose.config.platform import load_platform
-from linepose.estimation.noise_models import noise_model
+from linepose.estimation.noise_models import likelihood_of
 from linepose.simulation.survey import simulate_survey
 
 mine = load_platform(Path("config/platforms"), "mine")
 survey, _ = simulate_survey(mine.intrinsics(), mine.simulation, seed=5)
-likelihood = noise_model(mine.noise_model).make(survey, mine.intrinsics(), mine.hand_measured.pose)
+likelihood = likelihood_of(mine.noise_model, survey, mine.intrinsics())
 print(likelihood.survey.covariance[0, 0, 0, 0] / survey.covariance[0, 0, 0, 0])
 """
 READ = """

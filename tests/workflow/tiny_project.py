@@ -17,7 +17,7 @@ STUDY = {
     "data_folders": ["data"],
     "outliers": {"minimum_observations": 3, "threshold_px": 50.0},
     "sampling": {"n_walkers": 14, "n_burn_in": 5, "n_steps": 12},
-    "independence_sampling": {"n_walkers": 24, "n_burn_in": 20, "n_steps": 12},
+    "adjustment": {"n_draws": 10, "n_samples": 50},
 }
 PASSES = [
     {"north_m": -2.85, "east_m": -0.55, "heading_deg": 21, "speed_m_s": -0.5, "duration_s": 4},
@@ -31,7 +31,7 @@ TINY = {
         "basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]},
         "repeatability": None,
         "sensitivity": None,
-        "noise_models": {"n_splits": 2, "robust_steps": 12},
+        "adjustment": {"n_splits": 2},
     },
     "simulation": {
         "passes": PASSES,

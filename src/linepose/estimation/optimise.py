@@ -1,9 +1,7 @@
 """The most likely pose: Powell's method in bounded parameters, and the covariance that the curvature there gives.
 
-A noise model with parameters of its own (levels, intrinsics) is searched in two steps, since Powell's method takes five
-times as long over eleven parameters as a gradient does: Powell, coarsely, over the pose, then BFGS over everything.
-With levels that are far off, Powell's method can leave a good start for a worse minimum, so BFGS also goes from the
-start itself, and the better end inside the range counts.
+A likelihood with parameters of its own (a clock offset) is searched in two steps: Powell, coarsely, over the pose, then
+BFGS over everything. BFGS also goes from the start itself, and the better end inside the range counts.
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +27,7 @@ _UNIT_M, _UNIT_RAD = 0.5, 0.1
 _EDGE = 0.999  # of the pose's range: what ends there is no optimum, a pose that gross errors have driven away
 _DIFFERENCE = 1e-3  # in those units
 _GRADIENT = 1e-3  # in -log L per unit, where BFGS ends: some thousandths of a sigma from the optimum
-_FLAT = 2e-2  # where the rounding of the robust model's sweeps may end it: some hundredths
+_FLAT = 2e-2  # where rounding may end it: some hundredths
 
 
 class Search(Settings):
@@ -88,12 +86,8 @@ def optimise_within(
     """The same from parameters (P,), within `centre +- half_width` (P,) each."""
     if likelihood.n_parameters == N_PARAMETERS:
         return _powell(likelihood, start, centre, half_width, search)
-    cheaper = likelihood.surrogate()
-    if cheaper is not likelihood:
-        first = optimise_within(cheaper, start, centre, half_width, search)
-    else:
-        coarse = search.replaced(x_tolerance=_COARSE_X, f_tolerance=_COARSE_F)
-        first = _powell(likelihood, start, centre, half_width, coarse)
+    coarse = search.replaced(x_tolerance=_COARSE_X, f_tolerance=_COARSE_F)
+    first = _powell(likelihood, start, centre, half_width, coarse)
     ends = [_bfgs(likelihood, parameters, centre, half_width) for parameters in (start, first.parameters)]
     best = min(ends, key=lambda end: (not end.converged, end.neg_log_likelihood))
     return replace(best, n_evaluations=first.n_evaluations + sum(end.n_evaluations for end in ends))

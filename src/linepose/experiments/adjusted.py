@@ -137,7 +137,7 @@ def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
 
 
 EXPERIMENT: Final = Experiment(
-    name="adjustment",
+    name="adjusted",
     title="The adjustment beside",
     outputs={"adjustment": ADJUSTMENT, "adjusted_splits": ADJUSTED_SPLITS, **ADJUSTED},
     run=_run,

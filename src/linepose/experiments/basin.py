@@ -7,7 +7,7 @@ random direction and the cell's angle about a random axis.
 import logging
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 import pandas as pd
@@ -28,6 +28,7 @@ from linepose.settings import Settings
 from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
 _logger = logging.getLogger(__name__)
+OptimiserName = Literal["gauss_newton", "powell", "powell_in_front", "wide"]
 START_COLUMNS = tuple(f"start_{name}" for name in POSE_COLUMNS)
 
 BASIN: Final = pa.schema(
@@ -60,7 +61,7 @@ class BasinSettings(Settings):
     maximum_angle_deg: float = Field(60.0, gt=0, le=180, description="The grid reaches this angle from it (deg).")
     n_distances: PositiveInt = Field(30, description="Cells over the distance.")
     n_angles: PositiveInt = Field(30, description="Cells over the angle.")
-    optimisers: list[str] = Field(
+    optimisers: list[OptimiserName] = Field(
         [],
         description="Searches to compare on the same starts; the noise model's usual ones if empty. Of the adjustment: "
         "gauss_newton. Of a likelihood: powell: on the paper's equations, where points behind the "

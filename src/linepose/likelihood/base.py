@@ -1,4 +1,4 @@
-"""What every noise model offers: the log-likelihood of one pose, of many, and the residuals behind it."""
+"""What every likelihood offers: the log-likelihood of one pose, of many, and the residuals behind it."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class Residuals:
 class Likelihood(ABC):
     """The log-likelihood of a survey given the parameters, of which the first six are the camera's pose.
 
-    A noise model with parameters of its own (levels, intrinsics) appends them, and counts their priors in.
+    A likelihood with parameters of its own (a clock offset) appends them.
     A parameter vector at which the model is undefined (a point behind the camera) has minus infinity.
     """
 
@@ -65,14 +65,6 @@ class Likelihood(ABC):
     def initial_walker_sigma(self, translation_m: float, rotation_rad: float) -> Floats:
         """Sigma (P,) with which walkers are scattered around the optimum, given the pose's."""
         return np.repeat([translation_m, rotation_rad], 3)
-
-    def surrogate(self) -> "Likelihood":
-        """A cheaper model of the same parameters, from whose optimum a search may start; itself where there is none."""
-        return self
-
-    def parameter_priors(self) -> dict[str, tuple[float, float]]:
-        """Centre and sigma of the prior that the model itself brings, by parameter; none of the pose."""
-        return {}
 
     @abstractmethod
     def log_likelihoods(self, parameters: ArrayLike) -> Floats:

@@ -62,16 +62,6 @@ class ClockOffsetLikelihood(Likelihood):
         """That of the noise model, and a small part of the largest offset."""
         return np.append(self.inner.initial_walker_sigma(translation_m, rotation_rad), _SCATTER * self.maximum_s)
 
-    def surrogate(self) -> "Likelihood":
-        """The noise model's cheaper one with the offset; itself where there is none."""
-        if self.inner.surrogate() is self.inner:
-            return self
-        return ClockOffsetLikelihood(lambda offset_s: self._make(offset_s).surrogate(), self.maximum_s)
-
-    def parameter_priors(self) -> dict[str, tuple[float, float]]:
-        """Those of the noise model, and an even one of the offset."""
-        return self.inner.parameter_priors() | {OFFSET_NAME: (0.0, self.maximum_s / np.sqrt(3))}
-
     def log_likelihoods(self, parameters: ArrayLike) -> Floats:
         """Log-likelihood of each row; (K, P + 1) to (K,)."""
         rows = np.array(parameters, dtype=float, ndmin=2)

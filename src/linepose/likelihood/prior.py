@@ -80,15 +80,6 @@ class WithPrior(Likelihood):
         """That of the inner model."""
         return self.inner.initial_walker_sigma(translation_m, rotation_rad)
 
-    def parameter_priors(self) -> dict[str, tuple[float, float]]:
-        """Those of the inner model, which are beyond the pose."""
-        return self.inner.parameter_priors()
-
-    def surrogate(self) -> "Likelihood":
-        """The cheaper inner model with the same prior; itself where there is none."""
-        cheaper = self.inner.surrogate()
-        return self if cheaper is self.inner else WithPrior(cheaper, self.prior)
-
     def chi_square(self, parameters: ArrayLike) -> tuple[float, int]:
         """That of the inner model: the prior is not a residual."""
         return self.inner.chi_square(parameters)

@@ -7,12 +7,12 @@ import numpy as np
 import pandas as pd
 
 from linepose.estimation.outliers import removal_order, stage_observations
-from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS, rotation_vector_covariance, rotation_vector_pose
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS, rotation_vector_pose
+from linepose.paper.hand_measured import as_printed, hand_measured_sigma
 from linepose.paper.number import Number, Published, Results, numbers
 from linepose.survey.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
 
 _STAGES: Final = {"all": "all_25", "inliers": "inliers_16", "hand_measured": "hand_measured"}
-_HAND_SIGMA_M, _HAND_SIGMA_DEG = 0.1, 2.0  # of the hand-measured poses, section 4
 
 
 def navigation_numbers(name: str, published: Sequence[float], results: Results) -> list[Number]:
@@ -52,7 +52,7 @@ def inlier_numbers(quantity: str, inliers: Sequence[int], outliers: pd.DataFrame
 
 def field_numbers(name: str, published: Published, results: Results) -> list[Number]:
     """Every number of the field platform's stages: Tables 2 and 3, Figure 8, and the authors' notebook."""
-    poses, table3, notebook = results["pose"].set_index("stage"), published["table3"]["ladybird"], published["notebook"]
+    poses, table3, notebook = as_printed(results["pose"]), published["table3"]["ladybird"], published["notebook"]
     inliers = poses.loc["inliers"]
     return [
         *navigation_numbers(name, published["table2"]["ladybird"], results),
@@ -81,9 +81,8 @@ def shrimp_hand_measured_numbers(published: Published) -> list[Number]:
     """Table 3's hand-measured Shrimp row from its Table 1 pose, 0.1 m and 2 deg; no data set is needed for it."""
     table1 = published["table1"]["shrimp"]
     euler_pose = np.concatenate([table1["position_m"], np.deg2rad(table1["euler_deg"])])
-    covariance = np.diag(np.repeat([_HAND_SIGMA_M, np.deg2rad(_HAND_SIGMA_DEG)], 3) ** 2)
-    sigma = np.sqrt(np.diag(rotation_vector_covariance(euler_pose, covariance)))
-    obtained = pd.Series([*rotation_vector_pose(euler_pose), *sigma], [*POSE_COLUMNS, *SIGMA_COLUMNS])
+    pose = rotation_vector_pose(euler_pose)
+    obtained = pd.Series([*pose, *hand_measured_sigma(pose)], [*POSE_COLUMNS, *SIGMA_COLUMNS])
     return pose_numbers("shrimp, Table 3, hand_measured", published["table3"]["shrimp"]["hand_measured"], obtained)
 
 

@@ -9,6 +9,7 @@ import pyarrow as pa
 
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.paper.declarations import Declarations
+from linepose.paper.hand_measured import as_printed
 from linepose.survey.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
 from linepose.tables import floats, texts
 
@@ -86,7 +87,7 @@ def published_tables(
 
     Sets of which numbers are declared to deviate have the reason as their note.
     """
-    stages = poses.set_index("stage").loc[list(_STAGES.values())].set_axis(list(_STAGES), axis="index")
+    stages = as_printed(poses).loc[list(_STAGES.values())].set_axis(list(_STAGES), axis="index")
 
     def table(number: int, printed: Mapping[str, Any], obtained: pd.DataFrame) -> pd.DataFrame:
         notes = {name: declarations.reason(f"{platform}, Table {number}, {name}, ") for name in printed}

@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
-from linepose.likelihood.shared import SHARED_PARAMETERS
 
 from linepose.errors import EstimationError, InputError
 from linepose.estimation.identifiability import identifiability, in_body_axes, in_words
 from linepose.geometry import rotations
+from linepose.geometry.pose import POSE_COLUMNS
 
+FURTHER = tuple(f"further_{k}" for k in range(5))
 NAMES = ("r_z_m", "roll_rad", "focal_length_m")
 
 
@@ -56,10 +57,10 @@ def test_turns_about_the_body_axes_are_the_left_small_rotation():
         jacobian[:, i] = rotations.rotation_vector_from_matrix(moved[0] @ moved[1].T) / (2 * step)
     root = random.normal(size=(11, 11))
     covariance = root @ root.T
-    names, turned = in_body_axes(SHARED_PARAMETERS, parameters, covariance)
+    names, turned = in_body_axes((*POSE_COLUMNS, *FURTHER), parameters, covariance)
     full = np.eye(11)
     full[3:6, 3:6] = jacobian
-    assert names[:7] == ("r_x_m", "r_y_m", "r_z_m", "roll_rad", "pitch_rad", "yaw_rad", "log_shared_level")
+    assert names[:7] == ("r_x_m", "r_y_m", "r_z_m", "roll_rad", "pitch_rad", "yaw_rad", "further_0")
     assert np.allclose(turned, full @ covariance @ full.T, rtol=1e-8, atol=1e-8)
 
 

@@ -2,10 +2,8 @@ import emcee
 import numpy as np
 import pytest
 
-from linepose.errors import EstimationError, InputError
-from linepose.estimation.diagnostics import diagnose_samples
-from linepose.estimation.noise_models import noise_model
-from linepose.estimation.sampling import IndependenceSettings, SamplingSettings, sample, stage_seed
+from linepose.errors import InputError
+from linepose.estimation.sampling import SamplingSettings, sample, stage_seed
 
 SHORT = SamplingSettings(n_walkers=12, n_burn_in=3, n_steps=5)
 
@@ -125,52 +123,3 @@ def test_seeds_of_stages_differ_and_stay():
     assert stage_seed(2017, 1, 2) != stage_seed(2017, 2, 1)
     assert stage_seed(2017, 16) == np.random.SeedSequence([2017, 16]).generate_state(1)[0]
     np.random.RandomState(stage_seed(2017, 25))  # it fits what the sampler takes
-
-
-@pytest.mark.statistical
-def test_fitted_proposals_have_the_known_covariance_and_mean_in_few_steps(gaussian, pose_covariance):
-    mean = gaussian.measured.mean(axis=0)
-    chain = sample(gaussian, mean, 1, IndependenceSettings(n_walkers=24, n_burn_in=160, n_steps=1000))
-    found = diagnose_samples(chain.parameters)
-    assert found.warning == ""
-    n_effective = found.effective_sample_size.min()
-    assert n_effective > 2000
-    whitening = np.linalg.inv(np.linalg.cholesky(pose_covariance))
-    whitened = (chain.flat() - mean) @ whitening.T
-    # as above: four sigmas of a mean, a variance or a covariance of so many samples
-    assert np.abs(whitened.mean(axis=0)).max() < 4 / np.sqrt(n_effective)
-    covariance = whitening @ chain.covariance() @ whitening.T
-    assert np.all(np.abs(covariance - np.eye(6)) < 4 * np.sqrt((1 + np.eye(6)) / n_effective))
-
-
-@pytest.mark.statistical
-def test_fitted_proposals_go_without_a_curvature(gaussian, pose_covariance, monkeypatch):
-    def none(*_):
-        raise EstimationError("open")
-
-    monkeypatch.setattr("linepose.estimation.optimise.laplace_covariance", none)
-    mean = gaussian.measured.mean(axis=0)
-    chain = sample(gaussian, mean, 1, IndependenceSettings(n_walkers=48, n_burn_in=1200, n_steps=600))
-    # the warm-up starts off scale, so only the size of the sigmas: to a tenth, some hundreds of effective samples
-    np.testing.assert_allclose(chain.sigma(), np.sqrt(np.diag(pose_covariance)), rtol=0.1)
-
-
-def test_fitted_proposals_are_the_same_for_the_same_seed_only(gaussian, true_pose):
-    short = IndependenceSettings(n_walkers=24, n_burn_in=20, n_steps=5)
-    first, second, other = (sample(gaussian, true_pose, seed, short).parameters for seed in (1, 1, 2))
-    assert first.shape == (5, 24, 6)
-    np.testing.assert_array_equal(first, second)
-    assert not np.any(first == other)
-
-
-def test_too_few_walkers_are_refused_in_one_line():
-    with pytest.raises(InputError) as error:
-        IndependenceSettings(n_walkers=10)
-    assert str(error.value) == (
-        "IndependenceSettings: n_walkers: found 10, expected greater than or equal to 24; correct the value"
-    )
-
-
-def test_noise_models_with_levels_are_sampled_by_fitted_proposals():
-    assert noise_model("published").sampling is SamplingSettings
-    assert noise_model("shared").sampling is noise_model("robust").sampling is IndependenceSettings

@@ -7,9 +7,10 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import kstest
 
 from linepose.errors import InputError
+from linepose.estimation.likelihood_estimator import LikelihoodEstimator
 from linepose.estimation.optimise import Optimum
 from linepose.estimation.optimisers import OPTIMISERS
-from linepose.experiments.basin import BasinSettings, Sweep, start_pose, summarise, wilson_interval
+from linepose.experiments.basin import BasinSettings, Sweep, chosen_searches, start_pose, summarise, wilson_interval
 from unit.experiments.conftest import SIGMA, TRUE_POSE
 
 GRID = BasinSettings(n_distances=6, n_angles=5)
@@ -67,7 +68,7 @@ def test_sweep_finds_the_only_optimum_of_a_quadratic(model, request):
     likelihood = request.getfixturevalue(model)
     reference = likelihood.means.mean(axis=0)[:6]
     covariance = np.linalg.inv(likelihood.information)[:6, :6] / 12
-    row = Sweep(likelihood, reference, covariance, GRID, 1).attempt("powell", 17)
+    row = Sweep(LikelihoodEstimator(likelihood), reference, covariance, GRID, 1).attempt("powell", 17)
     assert row["success"]
     assert row["mahalanobis"] < 0.01
     start = [row["start_r_x_m"], row["start_theta_z_rad"]]
@@ -79,13 +80,32 @@ def test_success_ends_at_the_threshold(gaussian, monkeypatch, share, success):
     """An optimiser that stops 0.05 and 0.2 sigmas from the reference."""
     end = TRUE_POSE + share * SIGMA * np.eye(6)[1]
     monkeypatch.setitem(OPTIMISERS, "stops", lambda *_: Optimum(end, 0.0, 1, True))
-    row = Sweep(gaussian, TRUE_POSE, np.diag(SIGMA**2), GRID, 1).attempt("stops", 0)
+    row = Sweep(LikelihoodEstimator(gaussian), TRUE_POSE, np.diag(SIGMA**2), GRID, 1).attempt("stops", 0)
     assert row["success"] is success
     assert row["mahalanobis"] == pytest.approx(share, rel=1e-9)
 
 
+def test_searches_are_the_usual_ones_or_those_that_are_named(gaussian):
+    estimator = LikelihoodEstimator(gaussian)
+    assert chosen_searches(estimator, [], "robot.yaml") == ("powell", "wide")
+    assert chosen_searches(estimator, ["powell_in_front"], "robot.yaml") == ("powell_in_front",)
+    with pytest.raises(InputError) as error:
+        chosen_searches(estimator, ["gauss_newton"], "robot.yaml")
+    assert str(error.value) == (
+        "robot.yaml: experiments.basin.optimisers: found gauss_newton, expected of powell, wide, powell_in_front; "
+        "correct the name, or leave the key out"
+    )
+
+
+def test_a_search_that_comes_to_no_pose_is_no_success(gaussian, monkeypatch):
+    monkeypatch.setitem(OPTIMISERS, "lost", lambda *_: Optimum(np.full(6, np.nan), np.nan, 1, False))
+    row = Sweep(LikelihoodEstimator(gaussian), TRUE_POSE, np.diag(SIGMA**2), GRID, 1).attempt("lost", 0)
+    assert not row["success"]
+    assert row["mahalanobis"] == np.inf
+
+
 def test_rows_do_not_depend_on_what_is_swept_with_them(gaussian):
-    sweep = Sweep(gaussian, TRUE_POSE, np.diag(SIGMA**2), GRID, 1)
+    sweep = Sweep(LikelihoodEstimator(gaussian), TRUE_POSE, np.diag(SIGMA**2), GRID, 1)
     together = sweep.rows("powell", range(3, 7))
     assert sweep.rows("powell", [5]).equals(together.iloc[[2]].reset_index(drop=True))
 

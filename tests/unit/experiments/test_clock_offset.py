@@ -6,16 +6,18 @@ import numpy as np
 import pytest
 
 from linepose.config.platform import load_platform
+from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.optimise import laplace_covariance, optimise
 from linepose.estimation.sampling import SamplingSettings
 from linepose.experiments.clock_offset import (
     CLOCK_OFFSET,
     CORRELATION_COLUMNS,
-    ClockOffsetEvidence,
     PoseWithoutOffset,
+    adjusted_clock_offset,
     correlation_with_all,
     estimate_clock_offset,
 )
+from linepose.experiments.clock_offset_evidence import ClockOffsetEvidence
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.simulation.navigation_error import mixed
 from linepose.tables import read_table, write_table
@@ -70,19 +72,21 @@ def test_planted_offset_is_recovered_within_its_sigma(platform):
 
 
 @pytest.mark.statistical
-def test_shared_noise_model_is_honest_where_a_view_s_points_share_the_error(platform):
+def test_the_adjustment_finds_the_offset_without_a_log_where_views_share_their_errors(platform):
     """Nine tenths of the variance common to a view; three surveys, chi-square of 3."""
     settings, errors = clock_survey.both_ways(platform.simulation), []
     reported = settings.reported_sigma
-    shared = mixed([*reported.position_m, *reported.euler_rad], 0.9)
+    common = mixed([*reported.position_m, *reported.euler_rad], 0.9)
     for seed in range(3):
-        survey, log = clock_survey.record(
-            platform.intrinsics(), replace(settings, navigation_error=shared), PLANTED_S, seed
-        )
-        model = clock_survey.likelihood(platform.intrinsics(), survey, log, 0.3, "shared")
-        found = optimise(model, platform.start_pose())
-        assert model.parameter_names[-1] == "clock_offset_s"
-        errors.append((found.parameters[-1] - PLANTED_S) / laplace_covariance(model, found.parameters)[-1, -1] ** 0.5)
+        moved = replace(settings, navigation_error=common)
+        survey, _ = clock_survey.record(platform.intrinsics(), moved, PLANTED_S, seed)
+        estimator = AdjustmentEstimator(survey, platform.intrinsics(), platform.hand_measured)
+        plain = estimator.adjusted()
+        without = PoseWithoutOffset(plain.pose, plain.covariance, 0.5 * plain.diagnostics.chi_squared)
+        table, samples = adjusted_clock_offset(estimator, without, 0.3, 1)
+        row = table.iloc[0]
+        assert np.std(samples["clock_offset_s"], ddof=1) == pytest.approx(row["sampled_sigma_s"], rel=1e-9)
+        errors.append((row["offset_s"] - PLANTED_S) / row["sigma_s"])
     assert 0.024 < np.sum(np.square(errors)) < 16.3
 
 

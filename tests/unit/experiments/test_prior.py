@@ -2,11 +2,9 @@
 
 import numpy as np
 import pytest
-from linepose.likelihood.shared import SHARED_PARAMETERS
 
 from linepose.config.platform import Platform
-from linepose.experiments.prior import data_weight, prior_table
-from linepose.geometry.pose import POSE_COLUMNS
+from linepose.experiments.prior import data_weight, identifiability_table, prior_table
 from linepose.likelihood.prior import pose_prior
 from unit import made_up
 
@@ -29,7 +27,7 @@ def posterior(data_sigmas):
 
 def test_each_parameter_has_its_decider():
     covariance = posterior([0.01, 0.1, 1.0, 1e-4, 1e-4, 1e-4])
-    table = prior_table(POSE_COLUMNS, CENTRE, covariance, pose_prior(CENTRE, PRIOR), {}, True).set_index("parameter")
+    table = prior_table(CENTRE, covariance, pose_prior(CENTRE, PRIOR), True).set_index("parameter")
     assert table["decided_by"].tolist() == ["data", "data and prior", "prior", "data", "data", "data"]
     np.testing.assert_allclose(table["data_weight"].iloc[:3], [1 / 1.01, 0.5, 0.01 / 1.01], rtol=1e-9)
     np.testing.assert_allclose(table["difference"], 0.0, atol=1e-12)
@@ -38,33 +36,24 @@ def test_each_parameter_has_its_decider():
 
 def test_without_a_prior_the_data_decide_and_the_weight_tells_how_much_the_tape_would_add():
     covariance = np.diag(np.square([0.01, 0.1, 1.0, 0.01, 0.01, 0.01]))
-    table = prior_table(POSE_COLUMNS, CENTRE, covariance, pose_prior(CENTRE, PRIOR), {}, False)
+    table = prior_table(CENTRE, covariance, pose_prior(CENTRE, PRIOR), False)
     assert set(table["decided_by"]) == {"data"}
     assert not table["prior_counted_in"].any()
     np.testing.assert_allclose(table["data_weight"].iloc[:3], [1 / 1.01, 0.5, 0.01 / 1.01], rtol=1e-9)
 
 
-def test_parameters_beyond_the_pose_have_the_noise_model_s_priors():
-    names = SHARED_PARAMETERS
-    parameters = np.concatenate([CENTRE, np.zeros(3), [324.0, 8.2e-3]])
-    sigma = np.array([0.01] * 6 + [0.1, 1.5, 0.05, 1.9, 2e-5])
-    others = dict.fromkeys(names[6:9], (np.log(0.5), 1.5)) | {names[9]: (323.0, 2.0), names[10]: (8.2e-3, 1e-4)}
-    table = prior_table(names, parameters, np.diag(sigma**2), pose_prior(CENTRE, PRIOR), others, False)
-    table = table.set_index("parameter")
-    assert table.loc["principal_point_px", "decided_by"] == "prior"
-    assert table.loc["focal_length_m", "decided_by"] == "data"
-    assert table.loc["log_white_level", "decided_by"] == "prior"
-    assert table.loc["log_shared_level", "decided_by"] == "data"
-    assert table.loc["principal_point_px", "difference"] == pytest.approx(1.0)
-    assert table["prior_counted_in"].tolist() == [False] * 6 + [True] * 5
+def test_what_is_known_least_is_named():
+    covariance = np.diag(np.square([0.01, 0.01, 0.09, 1e-3, 1e-3, 1e-3]))
+    table = identifiability_table(CENTRE, covariance, pose_prior(CENTRE, PRIOR))
+    assert table["weakest_in_words"].unique().tolist() == ["r_z"]
+    assert table.set_index("parameter").loc["r_z_m", "shrinkage"] == pytest.approx(1 - 0.81)
 
 
 def test_platform_file_decides_whether_the_hand_measurement_counts():
-    assert made_up.platform().pose_prior() is None
+    assert made_up.platform(prior="none").pose_prior() is None
     prior = made_up.platform(prior="hand_measured").pose_prior()
     np.testing.assert_allclose(prior.pose, made_up.platform().start_pose())
     np.testing.assert_allclose(prior.sigma()[:3], 0.1)
-    # two degrees about each Euler axis; nearly orthogonal ones at a pitch of 0
     np.testing.assert_allclose(prior.sigma()[3:], np.radians(2.0), rtol=1e-9)
     with pytest.raises(ValueError, match="hand_measured"):
         Platform.model_validate(made_up.PLATFORM | {"prior": "tape"})

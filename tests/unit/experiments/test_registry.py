@@ -44,7 +44,6 @@ def message(platform, values: dict) -> str:
         ({"basin": {"n_distances": 0}}, "robot.yaml: experiments.basin.n_distances: found 0"),
         ({"basin": {"maximum_angle_deg": 0}}, "basin.maximum_angle_deg: found 0"),
         ({"basin": {"optimisers": ["powel"]}}, "basin.optimisers.0: found 'powel'"),
-        ({"basin": {"optimisers": []}}, "basin.optimisers"),
         ({"basin": {"n_angle": 5}}, "did you mean n_angles?"),
         ({"basins": None}, "did you mean basin?"),
         ({"basin": 5}, "robot.yaml: experiments.basin: found 5, expected keys and values"),
@@ -60,6 +59,10 @@ def message(platform, values: dict) -> str:
 )
 def test_what_cannot_be_is_one_clear_line(scans, values, told):
     assert told in message(scans, values)
+
+
+def test_a_clock_offset_of_an_adjustment_needs_no_log(views):
+    check_experiments(views.replaced(noise_model="adjustment", experiments={"clock_offset": {}}), FILE)
 
 
 def test_all_faults_are_told_at_once(views):
@@ -84,7 +87,7 @@ def test_clock_offset_needs_a_log(scans, views):
 def test_every_experiment_but_three_runs_by_default_and_null_leaves_one_out(views):
     default = experiment_settings(views)
     assert not default.subsets
-    assert default.noise_models is None
+    assert default.adjustment is None
     assert default.clock_offset is None
     assert default.basin
     assert default.repeatability.first is None
@@ -92,6 +95,8 @@ def test_every_experiment_but_three_runs_by_default_and_null_leaves_one_out(view
     assert names == {"uncertainty", "prior", "splits", "leave_one_out", "basin", "mapping", "sensitivity"}
     without = views.replaced(experiments=dict.fromkeys(SECTIONS))
     assert {one.name for one in wanted_experiments(without)} == {"uncertainty", "prior"}
+    adjusted = {one.name for one in wanted_experiments(views.replaced(noise_model="adjustment"))}
+    assert adjusted == names - {"uncertainty"}
 
 
 def test_error_against_the_truth_is_of_simulated_platforms(scans, views):
@@ -101,7 +106,7 @@ def test_error_against_the_truth_is_of_simulated_platforms(scans, views):
 
 
 def test_compared_platforms_are_those_that_sections_name(views):
-    asked = {"sensitivity": {"platforms": ["a", "b"]}, "noise_models": {"platforms": ["b", "c"]}}
+    asked = {"sensitivity": {"platforms": ["a", "b"]}, "adjustment": {"platforms": ["b", "c"]}}
     assert compared_platforms(views.replaced(experiments=asked), FILE) == ["a", "b", "c"]
     assert compared_platforms(views, FILE) == []
 
@@ -109,7 +114,7 @@ def test_compared_platforms_are_those_that_sections_name(views):
 def test_entries_share_no_result_and_name_what_they_need():
     results = [name for one in EXPERIMENTS for name in one.outputs]
     assert len(results) == len(set(results))
-    of_the_pipeline = {"observations", "outliers", "optima", "samples", "pose", "truth"}
+    of_the_pipeline = {"observations", "outliers", "optima", "samples", "pose", "truth", "estimated_points"}
     for one in EXPERIMENTS:
         assert set(one.needs) <= of_the_pipeline | set(results), one.name
         assert one.title
@@ -122,7 +127,7 @@ def test_undeclared_inputs_are_refused(views, tmp_path):
     inputs = Inputs("robot", views, FILE, {}, {}, {"seed": 1}, {}, tmp_path, tmp_path)
     assert inputs.seed == 1
     with pytest.raises(KeyError):
-        _ = inputs.search
+        _ = inputs.conditions
     with pytest.raises(KeyError):
         _ = inputs.data
     with pytest.raises(KeyError):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from linepose.estimation.likelihood_estimator import LikelihoodEstimator
 from linepose.experiments.sensitivity import NOMINAL, camera_changes, sensitivity
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from unit.experiments.conftest import SIGMA, TRUE_POSE, GaussianLikelihood
@@ -21,7 +22,9 @@ def test_camera_changes_are_one_sigma_of_one_quantity(camera):
 def test_moved_and_narrowed_pose(gaussian):
     """Means 0.2 m to the right with half the sigma: the pose moves 0.2 m, by 0.2 / (sigma_y / sqrt 12) sigmas."""
     moved = GaussianLikelihood(gaussian.survey, gaussian.means + np.array([0, 0.2, 0, 0, 0, 0]), np.diag(SIGMA**2) / 4)
-    table = sensitivity(gaussian, {"moved": moved}, TRUE_POSE).set_index("change")
+    table = sensitivity(LikelihoodEstimator(gaussian), {"moved": LikelihoodEstimator(moved)}, TRUE_POSE).set_index(
+        "change"
+    )
     assert table.index.tolist() == [NOMINAL, "moved"]
     assert table.loc[NOMINAL, "mahalanobis"] == 0
     assert table.loc["moved", "mahalanobis"] == pytest.approx(0.2 / (SIGMA[1] / np.sqrt(12)), rel=1e-3)

@@ -5,6 +5,7 @@ import pytest
 from scipy.stats import kstest
 
 from linepose.errors import InputError
+from linepose.estimation.likelihood_estimator import LikelihoodEstimator
 from linepose.experiments.splits import random_splits, split_numbers
 from unit.experiments.conftest import SIGMA, TRUE_POSE, GaussianLikelihood, make_survey
 
@@ -44,19 +45,19 @@ def test_p_values_of_splits_of_independent_data_are_uniform():
     for index in range(400):
         means = TRUE_POSE + random.standard_normal((8, 6)) * SIGMA
         likelihood = GaussianLikelihood(survey, means, np.diag(SIGMA**2))
-        values.append(random_splits(likelihood, TRUE_POSE, 4, [index], seed=1)["p_value"].iloc[0])
+        values.append(random_splits(LikelihoodEstimator(likelihood), TRUE_POSE, 4, [index], seed=1)["p_value"].iloc[0])
     assert kstest(values, "uniform").pvalue > 1e-3
 
 
 def test_splits_do_not_depend_on_the_batch(gaussian):
-    together = random_splits(gaussian, TRUE_POSE, 5, range(4), seed=3)
-    alone = random_splits(gaussian, TRUE_POSE, 5, [2], seed=3)
+    together = random_splits(LikelihoodEstimator(gaussian), TRUE_POSE, 5, range(4), seed=3)
+    alone = random_splits(LikelihoodEstimator(gaussian), TRUE_POSE, 5, [2], seed=3)
     assert together.iloc[[2]].reset_index(drop=True).equals(alone)
 
 
 def test_split_that_leaves_a_direction_open_has_a_pose_but_no_distance(gaussian):
     """Nothing measures r_y."""
     gaussian.information[1, :] = gaussian.information[:, 1] = 0.0
-    table = random_splits(OpenLikelihood(gaussian), TRUE_POSE, 5, range(2), seed=3)
+    table = random_splits(LikelihoodEstimator(OpenLikelihood(gaussian)), TRUE_POSE, 5, range(2), seed=3)
     assert table[["mahalanobis", "p_value", "sigma_r_x_m_1"]].isna().all(axis=None)
     assert np.isfinite(table[["r_x_m_1", "theta_z_rad_2", "distance_m"]].to_numpy()).all()

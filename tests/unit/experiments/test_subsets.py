@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from linepose.errors import InputError
+from linepose.estimation.likelihood_estimator import LikelihoodEstimator
 from linepose.estimation.sampling import SamplingSettings
 from linepose.experiments.accepted import Accepted
 from linepose.experiments.subsets import (
@@ -75,7 +76,7 @@ def test_estimate_is_the_mean_and_its_sigma(model, request):
     numbers = [2, 5, 7, 11]
     start = likelihood.means[0, :6]
     settings = SamplingSettings(n_walkers=100, n_burn_in=300, n_steps=400, start_sigma_m=0.05)
-    table = subset_estimates(likelihood, {"some": numbers}, start, seed=1, settings=settings)
+    table = subset_estimates(LikelihoodEstimator(likelihood, sampling=settings), {"some": numbers}, start, seed=1)
     row = table.iloc[0]
     mean = likelihood.means[[n - 1 for n in numbers]].mean(axis=0)[:6]
     sigma = np.sqrt(np.diag(np.linalg.inv(likelihood.information))[:6] / len(numbers))
@@ -92,7 +93,8 @@ def test_estimate_is_the_mean_and_its_sigma(model, request):
 @pytest.fixture
 def data(gaussian):
     """Observation 7 of twelve was rejected."""
-    return Accepted(gaussian, gaussian.select([1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12]))
+    everything = LikelihoodEstimator(gaussian)
+    return Accepted(everything, everything.select([1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12]))
 
 
 def test_listed_and_drawn_subsets(data):

@@ -28,7 +28,7 @@ def model(simulated):
 def at(simulated, offset_s):
     platform, survey, log = simulated
     moved = survey_at(survey, survey_motions(log, survey, 0.1 * (1 + 2 / STEPS)), offset_s)
-    return likelihood_of("published", moved, platform.intrinsics(), platform.start_pose())
+    return likelihood_of("published", moved, platform.intrinsics())
 
 
 @pytest.mark.parametrize("offset_s", [-0.1, -0.0437, 0.0, 0.00123, 0.0289, 0.1])
@@ -45,7 +45,7 @@ def test_it_is_the_model_of_the_survey_at_that_offset(simulated, model, offset_s
 def test_at_no_offset_it_is_the_model_itself(simulated, model):
     platform, survey, _ = simulated
     pose = np.array(platform.simulation.true_pose)
-    plain = likelihood_of("published", survey, platform.intrinsics(), platform.start_pose())
+    plain = likelihood_of("published", survey, platform.intrinsics())
     assert model.log_likelihood(np.append(pose, 0.0)) == pytest.approx(plain.log_likelihood(pose), rel=1e-9)
     assert model.parameter_names == (*POSE_COLUMNS, "clock_offset_s")
     np.testing.assert_array_equal(model.start(pose), [*pose, 0.0])

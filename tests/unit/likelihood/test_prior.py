@@ -83,11 +83,11 @@ def test_posterior_of_gaussians_is_the_weighted_mean(gaussian):
 
 def test_a_wide_prior_changes_nothing_and_a_narrow_one_decides():
     survey = synthetic_survey(6, 5, seed=1)
-    data = likelihood_of("published", survey, DISTORTED_CAMERA, SYNTHETIC_POSE)
+    data = likelihood_of("published", survey, DISTORTED_CAMERA)
     alone = optimise(data, SYNTHETIC_POSE)
     away = SYNTHETIC_POSE + np.array([0.05, -0.05, 0.05, 0.01, 0.01, 0.01])
-    wide = likelihood_of("published", survey, DISTORTED_CAMERA, SYNTHETIC_POSE, pose_prior(away, 1e8 * COVARIANCE))
-    narrow = likelihood_of("published", survey, DISTORTED_CAMERA, SYNTHETIC_POSE, pose_prior(away, 1e-10 * COVARIANCE))
+    wide = likelihood_of("published", survey, DISTORTED_CAMERA, pose_prior(away, 1e8 * COVARIANCE))
+    narrow = likelihood_of("published", survey, DISTORTED_CAMERA, pose_prior(away, 1e-10 * COVARIANCE))
     sigma = np.sqrt(np.diag(laplace_covariance(data, alone.parameters)))
     np.testing.assert_allclose(optimise(wide, SYNTHETIC_POSE).parameters / sigma, alone.parameters / sigma, atol=1e-2)
     np.testing.assert_allclose(optimise(narrow, away).parameters, away, atol=1e-5)
@@ -95,17 +95,15 @@ def test_a_wide_prior_changes_nothing_and_a_narrow_one_decides():
 
 def test_what_is_not_the_prior_s_is_the_noise_model_s():
     survey = synthetic_survey(6, 5, seed=1)
-    data = likelihood_of("published", survey, DISTORTED_CAMERA, SYNTHETIC_POSE)
-    both = likelihood_of("published", survey, DISTORTED_CAMERA, SYNTHETIC_POSE, pose_prior(CENTRE, COVARIANCE))
+    data = likelihood_of("published", survey, DISTORTED_CAMERA)
+    both = likelihood_of("published", survey, DISTORTED_CAMERA, pose_prior(CENTRE, COVARIANCE))
     rows = SYNTHETIC_POSE + 1e-3 * np.random.default_rng(2).standard_normal((5, 6))
     expected = data.log_likelihoods(rows) + pose_prior(CENTRE, COVARIANCE).log_density(rows)
     np.testing.assert_array_equal(both.log_likelihoods(rows), expected)
     assert both.log_likelihood(rows[0]) == pytest.approx(expected[0], rel=1e-14)
     np.testing.assert_array_equal(both.residuals(rows[0]).error_px, data.residuals(rows[0]).error_px)
     chosen = [1, 2, 5, 6]
-    apart = likelihood_of(
-        "published", survey.select(chosen), DISTORTED_CAMERA, SYNTHETIC_POSE, pose_prior(CENTRE, COVARIANCE)
-    )
+    apart = likelihood_of("published", survey.select(chosen), DISTORTED_CAMERA, pose_prior(CENTRE, COVARIANCE))
     assert both.select(chosen).log_likelihood(rows[0]) == apart.log_likelihood(rows[0])
     assert both.parameter_names == data.parameter_names
     behind = np.array([0.0, 0.0, 0.0, np.pi, 0.0, 0.0])

@@ -134,12 +134,24 @@ def test_calibration_tells_itself_to_people(calibration):
     assert calibration.verdict().sentence in told
 
 
+def spoilt(arrays):
+    """Observations of which number 5 is 40 pixels off."""
+    u_px = np.where(arrays["observation"] == 5, arrays["u_px"] + 40.0, arrays["u_px"])
+    return linepose.observations_from_arrays(**(arrays | {"u_px": u_px}))
+
+
+def test_bad_observation_has_little_weight(simulated, arrays):
+    found = linepose.calibrate(spoilt(arrays), simulated.intrinsics(), BY_HAND)
+    assert found.outliers == []
+    views = found.results.table("adjusted_views", VIEWS).set_index("observation")
+    assert views["weight"].idxmin() == 5
+    assert views.loc[5, "fault"]
+    assert "observation 5 (" in str([check.found for check in found.verdict().checks])
+
+
 def test_bad_observation_is_removed(simulated, arrays):
-    spoilt = dict(arrays)
-    spoilt["u_px"] = np.where(arrays["observation"] == 5, arrays["u_px"] + 40.0, arrays["u_px"])
-    settings = linepose.CalibrationSettings(sampling=QUICK.sampling)
-    observations = linepose.observations_from_arrays(**spoilt)
-    assert linepose.calibrate(observations, simulated.intrinsics(), BY_HAND, settings).outliers[:1] == [5]
+    settings = linepose.CalibrationSettings(noise_model="published", prior="none", sampling=SHORT)
+    assert linepose.calibrate(spoilt(arrays), simulated.intrinsics(), BY_HAND, settings).outliers[:1] == [5]
 
 
 @pytest.mark.parametrize(
@@ -165,7 +177,9 @@ def test_table_without_a_column_says_how_it_is_made(simulated):
 
 
 def test_unknown_noise_model_lists_the_known():
-    with pytest.raises(linepose.InputError, match="noise_model: found 'publisched', expected one of published"):
+    with pytest.raises(
+        linepose.InputError, match="noise_model: found 'publisched', expected one of adjustment, published"
+    ):
         linepose.CalibrationSettings(noise_model="publisched")
 
 

@@ -12,7 +12,7 @@ from linepose.pipeline.code_digest import script_digest
 from linepose.pipeline.outdated import Present, outdated_results, told
 from linepose.pipeline.project_folder import load_platform_project
 from linepose.pipeline.provenance import provenance_of_job
-from linepose.pipeline.sections import platform_section, sampling_section, study_section
+from linepose.pipeline.sections import platform_section, study_section
 from linepose.tables import mark_tables, write_table
 
 SCHEMA = pa.schema([pa.field("value", pa.float64(), nullable=False)])
@@ -33,7 +33,7 @@ def root(tmp_path, platforms_folder, monkeypatch):
     project = load_platform_project("mine", tmp_path)
     platform, code = platform_section(project, "mine"), script_digest(tmp_path / "scripts" / "made_up.py")
     write("observations", {"platform": platform, "code": code}, [])
-    study = {"search": study_section(project, "search"), "own_sampling": sampling_section(project, "mine")}
+    study = {"search": study_section(project, "search"), "sampling": study_section(project, "sampling")}
     write("pose", {"platform": platform, "study": study, "code": code}, ["results/mine/observations.parquet"])
     code = script_digest(tmp_path / "scripts" / "experiment.py")
     write("basin", {"platform": platform, "sections": {"basin": BASIN}, "code": code}, [])

@@ -56,7 +56,7 @@ def test_everything_in_order_says_use_it_and_asks_for_nothing():
             {"intraclass_correlation": 0.31, "sigma_factor": None},
             "Independence within a view",
             Level.CARE,
-            "noise_model: balanced",
+            "noise_model: adjustment",
         ),
         ({"tilt_spread_deg": 1.4}, "Angular diversity", Level.CARE, "rolled or pitched"),
         ({"undecided": ("r_z down",)}, "Angular diversity", Level.CARE, "rolled or pitched"),
@@ -64,7 +64,7 @@ def test_everything_in_order_says_use_it_and_asks_for_nothing():
         ({"influence": 1.1}, "Worst observation", Level.CARE, "Repeat the view of observation 5"),
         ({"hand_sigmas": 3.1}, "Hand measurement", Level.CARE, "Measure again"),
         ({"sigma_factor": 1.7}, "Repeatability", Level.CARE, "Multiply the sigmas by 1.7"),
-        ({"truth_sigmas": 3.2}, "Truth", Level.CARE, "noise models"),
+        ({"truth_sigmas": 3.2}, "Truth", Level.CARE, "repeatability"),
     ],
 )
 def test_each_fault_is_named_with_what_to_do(change, name, level, advice):
