@@ -16,6 +16,7 @@ from linepose.estimation.outliers import OUTLIERS, OutlierSettings, removal_orde
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS, euler_covariance, euler_pose
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
+from linepose.pipeline.adjusted_tables import ADJUSTED, LEVELS, MEASUREMENTS, VIEWS
 from linepose.pipeline.exports.options import ExportOptions
 from linepose.pipeline.exports.write import export_calibration
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS
@@ -240,6 +241,21 @@ class Calibration:
         return self.results.table("residuals", RESIDUALS)
 
     @property
+    def levels(self) -> pd.DataFrame:
+        """The scales of the errors that the adjustment found; columns as in `LEVELS`."""
+        return self.results.table("levels", LEVELS)
+
+    @property
+    def adjusted_views(self) -> pd.DataFrame:
+        """Weight, mean correction and fault of each observation of an adjustment; columns as in `VIEWS`."""
+        return self.results.table("adjusted_views", VIEWS)
+
+    @property
+    def adjusted_measurements(self) -> pd.DataFrame:
+        """Correction, weight and normalised residual of each measurement; columns as in `MEASUREMENTS`."""
+        return self.results.table("adjusted_measurements", MEASUREMENTS)
+
+    @property
     def points(self) -> pd.DataFrame:
         """The pattern's estimated points; columns as in `ESTIMATED_POINTS`."""
         return self.results.table("estimated_points", ESTIMATED_POINTS)
@@ -267,12 +283,13 @@ class Calibration:
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """Every table by the name of the workflow's result."""
-        return {name: self.results.table(name, schema) for name, schema in TABLES.items()}
+        schemas = TABLES | {name: schema for name, schema in ADJUSTED.items() if self.results.has(name)}
+        return {name: self.results.table(name, schema) for name, schema in schemas.items()}
 
     def write(self, folder: Path | str) -> None:
         """Write every table into a folder as the workflow does: Parquet, whole or not at all."""
         for name, table in self.tables().items():
-            schema = TABLES[name]
+            schema = (TABLES | ADJUSTED)[name]
             own = tuple(column for column in table.columns if column not in schema.names)
             write_table(table, Path(folder) / f"{name}.parquet", with_parameters(schema, own))
 

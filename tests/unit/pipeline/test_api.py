@@ -17,6 +17,7 @@ from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
 from linepose.config.study import check_study
 from linepose.estimation.outliers import OutlierSettings
+from linepose.pipeline.adjusted_tables import VIEWS
 from linepose.pipeline.stages import OPTIMA
 from linepose.survey.observations import COVARIANCE_COLUMNS, OBSERVATIONS, survey_from_table, table_from_survey
 from linepose.tables import read_table
@@ -24,9 +25,8 @@ from unit.conftest import ROOT
 from unit.recorded_files import simulated_survey, write_platform_files
 
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-QUICK = linepose.CalibrationSettings(
-    threshold_px=50.0, sampling=linepose.SamplingSettings(n_walkers=24, n_burn_in=40, n_steps=60)
-)
+SHORT = linepose.SamplingSettings(n_walkers=24, n_burn_in=40, n_steps=60)
+QUICK = linepose.CalibrationSettings(adjustment=linepose.AdjustmentSettings(n_draws=50, n_samples=1000))
 N_PASSES = 16
 FUNCTIONS = [name for name in linepose.__all__ if inspect.isfunction(getattr(linepose, name))]
 IN_EXAMPLES = {"linepose": linepose, "np": np}
