@@ -8,7 +8,6 @@ import pandas as pd
 from linepose.estimation.noise_models import likelihood_of
 from linepose.geometry.camera import Camera
 from linepose.likelihood.clock_offset import ClockOffsetLikelihood, with_clock_offset
-from linepose.simulation.navigation_error import white_per_line
 from linepose.simulation.projection import exact_projections
 from linepose.simulation.record import navigation_log
 from linepose.simulation.settings import SimulationSettings
@@ -17,6 +16,7 @@ from linepose.simulation.trajectory import time_us
 from linepose.survey.navigation import NavigationCovariances, associate_covariances
 from linepose.survey.navigation_log import NavigationLog, associate_poses, interpolated_pose
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS, Survey, survey_from_table
+from unit.navigation_errors import white_per_line
 
 MAXIMUM_S = 0.1
 

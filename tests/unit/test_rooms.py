@@ -9,6 +9,7 @@ PACKAGE = Path(linepose.__file__).parent
 LOOSE = ("errors", "arrays", "tables", "plugins", "settings")
 ROOMS = (
     *LOOSE,
+    "compiling",
     "geometry",
     "survey",
     "simulation",

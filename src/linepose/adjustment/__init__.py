@@ -7,7 +7,7 @@ sure the pose is.
 
 from pathlib import Path
 
-from linepose.geometry.compiled_cache import forget_outdated
+from linepose.compiling.cache import forget_outdated
 
 forget_outdated(Path(__file__).parent)
 

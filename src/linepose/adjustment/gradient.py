@@ -12,12 +12,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from linepose.adjustment.compiling import kernel
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.normal import Pass
 from linepose.adjustment.process import Components, ErrorImage, ErrorStructure, Weights
 from linepose.adjustment.whitening import N_STATE, Factor, unwhiten_columns
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel
 
 DRIFT, WHITE, CONSTANT, PIXEL, LATENESS, TIME, ATTITUDE = range(7)
 _N: Final = 7

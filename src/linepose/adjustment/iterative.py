@@ -12,11 +12,11 @@ from typing import Final
 
 import numpy as np
 
-from linepose.adjustment.compiling import kernel
 from linepose.adjustment.linearise import Linearised
 from linepose.adjustment.normal import N_CAMERA, N_POSE, Prior
 from linepose.adjustment.whitening import Factor, unwhiten, whiten_residual
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel
 from linepose.errors import EstimationError
 
 _MOST_ITERATIONS: Final = 2000

@@ -20,8 +20,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from linepose.adjustment.compiling import kernel
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel
 
 N_THETA: Final = 9
 

@@ -11,11 +11,11 @@ from typing import Final, NamedTuple
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from linepose.adjustment.compiling import kernel
 from linepose.adjustment.linearise import Linearised
 from linepose.adjustment.process import Components
 from linepose.adjustment.whitening import Factor, factorise, whiten
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel
 
 N_INTRINSICS: Final = 2
 N_SHARED: Final = N_INTRINSICS + 1  # with the clock offset

@@ -18,10 +18,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from linepose.adjustment.compiling import kernel
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import Linearised
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel
 
 ACROSS_FLOOR_PX: Final = 0.05
 

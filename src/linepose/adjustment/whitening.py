@@ -10,9 +10,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from linepose.adjustment.compiling import kernel
 from linepose.adjustment.process import Components
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel
 
 N_STATE: Final = 12
 

@@ -29,14 +29,13 @@ from linepose.geometry.rotations import (
 )
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS
 from linepose.settings import Settings
-from linepose.survey.observations import POSITION_COLUMNS, Survey
+from linepose.survey.observations import POSITION_COLUMNS, POSITION_COVARIANCE_INDICES, Survey
 from linepose.tables import floats, optional_floats, texts, whole_numbers
 
 _logger = logging.getLogger(__name__)
 PROJECTED_COLUMNS = ("north_m", "east_m", "down_m")
-_UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))
 _AXES = ("north", "east", "down")
-PROJECTED_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j in _UPPER)
+PROJECTED_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j in POSITION_COVARIANCE_INDICES)
 _DISTORTION_STEP = 1e-6  # for derivatives by k1 and k2, of which undistort is a smooth function near 1
 
 MAPPING: Final = pa.schema(
@@ -146,7 +145,8 @@ def mapping_table(
                     "point": column.astype("int64"),
                     **{axis: position[:, k] for k, axis in enumerate(PROJECTED_COLUMNS)},
                     **{
-                        axes: spread[:, i, j] for axes, (i, j) in zip(PROJECTED_COVARIANCE_COLUMNS, _UPPER, strict=True)
+                        axes: spread[:, i, j]
+                        for axes, (i, j) in zip(PROJECTED_COVARIANCE_COLUMNS, POSITION_COVARIANCE_INDICES, strict=True)
                     },
                 }
             )

@@ -1,12 +1,12 @@
 """Eq. 17 compiled: the mean of all nearest points to each pattern point, weighted by their inverse covariances."""
 
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel_part
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import kernel_function
 from linepose.likelihood.layout import LANES
 
 
-@kernel_function
+@kernel_part
 def accumulate_pairs(rays: Floats, sums: Floats, points: Floats) -> None:
     """Turn each ray's `sums` (N, SUM_COLUMNS) into the world and add them up, in `points` (POINT_COLUMNS,).
 
@@ -40,7 +40,7 @@ def accumulate_pairs(rays: Floats, sums: Floats, points: Floats) -> None:
             points[at.E_D + lane] += fd * b1 + gd * b2 + dd * b3 + nd * cn + ed * ce + dd_ * cd
 
 
-@kernel_function
+@kernel_part
 def solve_points(points: Floats) -> None:
     """Turn information into covariance and information times position into position, in place (POINT_COLUMNS,).
 

@@ -11,8 +11,8 @@ from numba import config as numba_config
 from numba import get_thread_id, njit, prange  # type: ignore[attr-defined]
 
 from linepose.arrays import Floats
+from linepose.compiling.kernels import FUSED_ARITHMETIC, kernel_part
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import FUSED_ARITHMETIC, kernel_function
 from linepose.likelihood.estimate import accumulate_pairs, solve_points
 from linepose.likelihood.layout import LANES
 from linepose.likelihood.pairs import intersect
@@ -47,7 +47,7 @@ def workspace(n_observations: int, count: int) -> Workspace:
     )
 
 
-@kernel_function
+@kernel_part
 def _evaluate(
     survey: Floats,
     pose: Floats,

@@ -6,15 +6,15 @@ the variance of w that a does not explain, so no 3 x 3 matrix is inverted. Both 
 """
 
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel_part
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import kernel_function
 from linepose.likelihood.layout import LANES
 
 # Sine squared of the angle between rays at which they count as parallel: the nearest point has no digit left there.
 PARALLEL_SINE_SQUARED = 1e-16
 
 
-@kernel_function
+@kernel_part
 def intersect(rays: Floats, rays_again: Floats, sums: Floats, sums_again: Floats) -> None:
     """Write what all pairs say of the point, into `sums` (N, SUM_COLUMNS), from `rays` (N, RAY_COLUMNS).
 

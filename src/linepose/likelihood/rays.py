@@ -7,14 +7,14 @@ covariance a ray. Axes x, y, z here are the body's, n, e, d the world's; columns
 import math
 
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel_part
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import kernel_function
 from linepose.likelihood.layout import LANES
 
 _SMALL_ANGLE_SQUARED = 1e-4  # below this the series is exact to double precision
 
 
-@kernel_function
+@kernel_part
 def camera_axes(pose: Floats, axes: Floats) -> None:
     """Write the camera's axes in the body, the columns of `axes` (3, 3), for the rotation vector pose[3:6]."""
     x, y, z = pose[3], pose[4], pose[5]
@@ -39,7 +39,7 @@ def camera_axes(pose: Floats, axes: Floats) -> None:
     axes[1, 2] = second * y * z - first * x
 
 
-@kernel_function
+@kernel_part
 def trace_rays(survey: Floats, pose: Floats, axes: Floats, rays: Floats) -> None:
     """Write the frame, centre and moment of every ray; `survey` (N, SURVEY_COLUMNS), `rays` (N, RAY_COLUMNS)."""
     r_x, r_y, r_z = pose[0], pose[1], pose[2]
@@ -80,7 +80,7 @@ def trace_rays(survey: Floats, pose: Floats, axes: Floats, rays: Floats) -> None
             rays[i, at.RAY_MASK + lane] = survey[i, at.MASK + lane]
 
 
-@kernel_function
+@kernel_part
 def propagate_covariances(survey: Floats, pose: Floats, axes: Floats, rays: Floats) -> None:
     """Write the covariance across every ray: of its centre (1, 2) and its direction (3, 4) along f and g.
 

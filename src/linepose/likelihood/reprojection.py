@@ -1,15 +1,15 @@
 """Eq. 18-21 compiled: the estimates reprojected into every observation, their errors and the errors' variances."""
 
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel_part
 from linepose.likelihood import layout as at
-from linepose.likelihood.compiling import kernel_function
 from linepose.likelihood.layout import LANES
 
 # Squared error below which it has no direction of its own; the error's variance is then taken along the scan line.
 NO_ERROR = 1e-100
 
 
-@kernel_function
+@kernel_part
 def reproject(
     survey: Floats, pose: Floats, axes: Floats, rays: Floats, points: Floats, residuals: Floats, scores: Floats
 ) -> None:

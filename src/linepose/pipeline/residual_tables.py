@@ -10,12 +10,11 @@ from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.likelihood.base import Likelihood
-from linepose.survey.observations import POSITION_COLUMNS
+from linepose.survey.observations import POSITION_COLUMNS, POSITION_COVARIANCE_INDICES
 from linepose.tables import floats, optional_floats, texts, whole_numbers
 
-_UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))
 _AXES = ("north", "east", "down")
-POINT_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j in _UPPER)
+POINT_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j in POSITION_COVARIANCE_INDICES)
 
 RESIDUALS: Final = pa.schema(
     [
@@ -68,7 +67,10 @@ def point_rows(stage: str, point_m: Floats, covariance_m2: Floats, origin_m: Flo
     known = np.flatnonzero(np.all(np.isfinite(point_m), axis=1))
     position, covariance = point_m[known] + origin_m, covariance_m2[known]
     columns = {name: position[:, k] for k, name in enumerate(POSITION_COLUMNS)}
-    columns |= {name: covariance[:, i, j] for name, (i, j) in zip(POINT_COVARIANCE_COLUMNS, _UPPER, strict=True)}
+    columns |= {
+        name: covariance[:, i, j]
+        for name, (i, j) in zip(POINT_COVARIANCE_COLUMNS, POSITION_COVARIANCE_INDICES, strict=True)
+    }
     return pd.DataFrame({"stage": stage, "point": known.astype(np.int64), **columns})
 
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from linepose.geometry.compiled_cache import forget_outdated
+from linepose.compiling.cache import forget_outdated
 from linepose.survey import pattern
 
 forget_outdated(Path(__file__).parent, [Path(pattern.__file__)])

@@ -3,14 +3,12 @@
 An error has six axes: north, east, down (m), roll, pitch, yaw (rad). It is independent of what the system reports.
 """
 
-from collections.abc import Sequence
-
 import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from linepose.arrays import Floats
-from linepose.simulation.settings import NavigationErrorSettings, Triple
+from linepose.simulation.settings import NavigationErrorSettings
 
 
 def navigation_errors(
@@ -44,38 +42,3 @@ def _filtered(white: Floats, decay: Floats) -> Floats:
         for axis in range(white.shape[1]):
             values[k, axis] = decay[k - 1] * values[k - 1, axis] + innovation * white[k, axis]
     return values
-
-
-def white_per_line(sigma: Sequence[float]) -> NavigationErrorSettings:
-    """Errors independent from point to point; sigma (6,) in m and rad."""
-    return NavigationErrorSettings(white_position_m=_triple(sigma[:3]), white_euler_rad=_triple(sigma[3:]))
-
-
-def constant_in_view(sigma: Sequence[float]) -> NavigationErrorSettings:
-    """Errors alike for all points of a view, independent from view to view; sigma (6,) in m and rad."""
-    return NavigationErrorSettings(view_position_m=_triple(sigma[:3]), view_euler_rad=_triple(sigma[3:]))
-
-
-def mixed(sigma: Sequence[float], view_share: float) -> NavigationErrorSettings:
-    """Errors of variance sigma^2, of which `view_share` is constant in a view and the rest white; sigma (6,)."""
-    view, white = np.asarray(sigma) * np.sqrt(view_share), np.asarray(sigma) * np.sqrt(1 - view_share)
-    return NavigationErrorSettings(
-        white_position_m=_triple(white[:3]),
-        white_euler_rad=_triple(white[3:]),
-        view_position_m=_triple(view[:3]),
-        view_euler_rad=_triple(view[3:]),
-    )
-
-
-def gauss_markov(sigma: Sequence[float], correlation_time_s: float) -> NavigationErrorSettings:
-    """Errors correlated in time alone; sigma (6,) in m and rad."""
-    return NavigationErrorSettings(
-        gauss_markov_position_m=_triple(sigma[:3]),
-        gauss_markov_euler_rad=_triple(sigma[3:]),
-        correlation_time_s=correlation_time_s,
-    )
-
-
-def _triple(values: ArrayLike) -> Triple:
-    first, second, third = np.asarray(values, dtype=float).tolist()
-    return first, second, third

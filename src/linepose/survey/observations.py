@@ -22,6 +22,7 @@ POSITION_COLUMNS: Final = ("north_m", "east_m", "down_m")
 EULER_COLUMNS: Final = ("roll_rad", "pitch_rad", "yaw_rad")
 _AXES: Final = ("north", "east", "down", "roll", "pitch", "yaw")
 COVARIANCE_INDICES: Final = tuple((i, j) for i in range(6) for j in range(i, 6))
+POSITION_COVARIANCE_INDICES: Final = tuple((i, j) for i in range(3) for j in range(i, 3))
 COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}" for i, j in COVARIANCE_INDICES)
 POINT_FIELDS: Final = [
     *whole_numbers("observation", "point", "time_us"),

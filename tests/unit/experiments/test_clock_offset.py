@@ -19,9 +19,9 @@ from linepose.experiments.clock_offset import (
 )
 from linepose.experiments.clock_offset_evidence import ClockOffsetEvidence
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.simulation.navigation_error import mixed
 from linepose.tables import read_table, write_table
 from unit import clock_survey
+from unit.navigation_errors import mixed
 
 PLANTED_S = 0.03
 LARGE_S = 0.1  # six sigmas of ten passes

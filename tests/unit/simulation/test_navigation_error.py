@@ -3,6 +3,7 @@ import pytest
 
 from linepose.simulation import navigation_error
 from linepose.simulation.settings import NavigationErrorSettings
+from unit import navigation_errors
 
 SIGMA = (0.01, 0.02, 0.03, 0.001, 0.002, 0.003)
 N_STEPS = 200_000
@@ -34,12 +35,12 @@ def test_white_and_view_parts_have_their_sigmas_and_reach():
     rng = np.random.default_rng(4)
     view = np.repeat(np.arange(4000), 5)
     time = np.arange(len(view), dtype=float)
-    white = navigation_error.navigation_errors(rng, navigation_error.white_per_line(SIGMA), time, view)
+    white = navigation_error.navigation_errors(rng, navigation_errors.white_per_line(SIGMA), time, view)
     np.testing.assert_allclose(white.std(axis=0) / SIGMA, 1.0, atol=moments_tolerance(len(view)) / 2)
-    alike = navigation_error.navigation_errors(rng, navigation_error.constant_in_view(SIGMA), time, view)
+    alike = navigation_error.navigation_errors(rng, navigation_errors.constant_in_view(SIGMA), time, view)
     np.testing.assert_array_equal(alike[::5], alike[4::5])
     np.testing.assert_allclose(alike[::5].std(axis=0) / SIGMA, 1.0, atol=moments_tolerance(4000) / 2)
-    mixed = navigation_error.navigation_errors(rng, navigation_error.mixed(SIGMA, 0.7), time, view)
+    mixed = navigation_error.navigation_errors(rng, navigation_errors.mixed(SIGMA, 0.7), time, view)
     between = np.mean(mixed[::5] * mixed[4::5], axis=0) / np.square(SIGMA)
     np.testing.assert_allclose(between, 0.7, atol=4 * np.sqrt((1 + 0.7**2) / 4000))
 

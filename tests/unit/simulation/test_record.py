@@ -8,12 +8,12 @@ import pytest
 from linepose.geometry import rotations
 from linepose.inputs.scans.scan_files import read_scan
 from linepose.simulation import record
-from linepose.simulation.navigation_error import gauss_markov
 from linepose.simulation.projection import exact_projections
 from linepose.simulation.render import render
 from linepose.simulation.sensor import band_responses
 from linepose.simulation.settings import FaultSettings, GroundSettings
 from linepose.simulation.trajectory import body_poses, schedule
+from unit.navigation_errors import gauss_markov
 
 POSITION = ["north_m", "east_m", "down_m"]
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]

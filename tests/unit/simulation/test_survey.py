@@ -6,10 +6,10 @@ import pytest
 from linepose.geometry import camera as camera_module
 from linepose.geometry import rotations
 from linepose.simulation.board import world_points
-from linepose.simulation.navigation_error import gauss_markov
 from linepose.simulation.projection import exact_projections
 from linepose.simulation.settings import ExtractionSettings, FaultSettings
 from linepose.simulation.survey import faulty_observations, simulate_survey
+from unit.navigation_errors import gauss_markov
 
 
 def distances_of_rays_to_points(camera, pose, survey, points):

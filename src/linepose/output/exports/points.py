@@ -11,13 +11,12 @@ from linepose.inputs.local_frame import GEODETIC, MAP_FRAME
 from linepose.output.exports.map_frame import MapFrame, projected_map, tangent_map
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.residual_tables import POINT_COVARIANCE_COLUMNS
-from linepose.survey.observations import POSITION_COLUMNS
+from linepose.survey.observations import POSITION_COLUMNS, POSITION_COVARIANCE_INDICES
 from linepose.tables import read_table
 
 MAP_COLUMNS: Final = ("easting_m", "northing_m", "height_m")
 _SHORT: Final = ("easting", "northing", "height")
-_UPPER: Final = tuple((i, j) for i in range(3) for j in range(i, 3))
-MAP_COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_SHORT[i]}_{_SHORT[j]}_m2" for i, j in _UPPER)
+MAP_COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_SHORT[i]}_{_SHORT[j]}_m2" for i, j in POSITION_COVARIANCE_INDICES)
 MAP_SIGMA_COLUMNS: Final = tuple(f"sigma_{name}" for name in MAP_COLUMNS)
 PROJECTED_POSES: Final = ("calibrated", "hand_measured")
 
@@ -82,11 +81,13 @@ def _on_map(
     names = [name for name in ("observation", "point") if name in table]
     upper = table[list(covariance_columns)].to_numpy()
     covariance = np.zeros((len(table), 3, 3))
-    for k, (i, j) in enumerate(_UPPER):
+    for k, (i, j) in enumerate(POSITION_COVARIANCE_INDICES):
         covariance[:, i, j] = covariance[:, j, i] = upper[:, k]
     north_east_down = table[list(position_columns)].to_numpy()
     place, on_map = frame.places(north_east_down), frame.covariances(north_east_down, covariance)
     sigma = np.sqrt(np.maximum(np.diagonal(on_map, axis1=1, axis2=2), 0.0))
     columns = dict(zip(MAP_COLUMNS, place.T, strict=True)) | dict(zip(MAP_SIGMA_COLUMNS, sigma.T, strict=True))
-    columns |= {key: on_map[:, i, j] for key, (i, j) in zip(MAP_COVARIANCE_COLUMNS, _UPPER, strict=True)}
+    columns |= {
+        key: on_map[:, i, j] for key, (i, j) in zip(MAP_COVARIANCE_COLUMNS, POSITION_COVARIANCE_INDICES, strict=True)
+    }
     return table[names].reset_index(drop=True).assign(**columns)

@@ -19,9 +19,8 @@ from linepose.output.figures.style import BLACK, GREEN, GREY, HALF_PAGE_IN, RED,
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS
 from linepose.pipeline.table_checks import usable_rows
-from linepose.survey.observations import OBSERVATIONS, POSITION_COLUMNS
+from linepose.survey.observations import OBSERVATIONS, POSITION_COLUMNS, POSITION_COVARIANCE_INDICES
 
-_UPPER = tuple((i, j) for i in range(3) for j in range(i, 3))
 _PANEL_ASPECT = 0.75
 _MARGIN_SHARE = 0.08
 
@@ -155,7 +154,7 @@ def _circle_truth(axes: Axes, view: PlaneView, true_points_m: Floats | None) -> 
 
 def _covariances(rows: pd.DataFrame, view: PlaneView) -> Floats:
     covariance = np.zeros((len(rows), 3, 3))
-    for name, (i, j) in zip(PROJECTED_COVARIANCE_COLUMNS, _UPPER, strict=True):
+    for name, (i, j) in zip(PROJECTED_COVARIANCE_COLUMNS, POSITION_COVARIANCE_INDICES, strict=True):
         covariance[:, i, j] = covariance[:, j, i] = rows[name]
     return view.flat_covariance(covariance)
 

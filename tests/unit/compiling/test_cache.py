@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from linepose.geometry.compiled_cache import forget_outdated
+from linepose.compiling.cache import forget_outdated
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_numba_calls_new_code_of_an_unchanged_function(tmp_path):
     package = tmp_path / "kernels"
     package.mkdir()
     (package / "__init__.py").write_text(
-        "from pathlib import Path\nfrom linepose.geometry.compiled_cache import forget_outdated\n"
+        "from pathlib import Path\nfrom linepose.compiling.cache import forget_outdated\n"
         "forget_outdated(Path(__file__).parent)\n"
     )
     (package / "caller.py").write_text(

@@ -1,4 +1,4 @@
-"""How every function of the kernel is compiled."""
+"""How every kernel is compiled: division by zero gives infinity as in NumPy."""
 
 from collections.abc import Callable
 from typing import Any, Final
@@ -10,6 +10,11 @@ from numba import njit
 FUSED_ARITHMETIC: Final = {"contract"}
 
 
-def kernel_function(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a part of the kernel; only what calls the parts is cached on disk, see kernel.py."""
+def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a function and keep what was compiled on disk."""
+    return njit(cache=True, error_model="numpy", fastmath=FUSED_ARITHMETIC)(function)
+
+
+def kernel_part(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a function of which only the callers are kept on disk."""
     return njit(error_model="numpy", fastmath=FUSED_ARITHMETIC)(function)

@@ -11,9 +11,10 @@ _STAMP: Final = "compiled_from.txt"
 def forget_outdated(folder: Path, others: Iterable[Path] = ()) -> None:
     """Remove what numba has cached of the modules in a folder, unless all of them are as they were then.
 
-    `others` are sources elsewhere whose constants are compiled in. A folder that cannot be written has no cache.
+    `others` are sources elsewhere whose constants are compiled in; how kernels are compiled counts too. A folder that
+    cannot be written has no cache.
     """
-    sources = sorted([*folder.glob("*.py"), *others])
+    sources = sorted([*folder.glob("*.py"), *Path(__file__).parent.glob("*.py"), *others])
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()
     cache = folder / "__pycache__"
     stamp = cache / _STAMP

@@ -1,0 +1,1 @@
+"""How numerical kernels are compiled, and their compiled code kept on disk."""
