@@ -11,6 +11,7 @@ from numba import config as numba_config
 from numba import get_thread_id, njit, prange  # type: ignore[attr-defined]
 
 from linepose.arrays import Floats
+from linepose.compiling import kernels
 from linepose.compiling.kernels import FUSED_ARITHMETIC, kernel_part
 from linepose.likelihood import layout as at
 from linepose.likelihood.estimate import accumulate_pairs, solve_points
@@ -20,7 +21,7 @@ from linepose.likelihood.rays import camera_axes, propagate_covariances, trace_r
 from linepose.likelihood.reprojection import reproject
 
 MAXIMUM_THREADS: int = numba_config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
-_SOURCES = ("compiling", "estimate", "kernel", "layout", "pairs", "rays", "reprojection")
+_SOURCES = ("estimate", "kernel", "layout", "pairs", "rays", "reprojection")
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,8 @@ def _evaluate(
 
 def _digest() -> str:
     folder = Path(__file__).parent
-    return hashlib.sha256(b"".join((folder / f"{name}.py").read_bytes() for name in _SOURCES)).hexdigest()
+    sources = [Path(kernels.__file__), *(folder / f"{name}.py" for name in _SOURCES)]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()
 
 
 def _compiled(sources: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
