@@ -111,7 +111,7 @@ def halves(n_splits: int, seed: int) -> None:
 def main() -> None:
     """Measure what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("what", choices=("speed", "growth", "prior-art", "halves"))
+    parser.add_argument("what", nargs="?", default="speed", choices=("speed", "growth", "prior-art", "halves"))
     parser.add_argument("--surveys", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--measurements", type=int, nargs="+", default=[1000, 10_000, 100_000])

@@ -5,7 +5,7 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.adjustment.settings import AdjustmentSettings
+    from linepose.adjustment.settings import AdjustmentSection
     from linepose.config.platform import Platform
     from linepose.estimation.adjustment_estimator import adjustment_estimator
     from linepose.pipeline.adjusted_tables import ADJUSTED, STAGES, adjusted_tables
@@ -16,7 +16,7 @@ with stage(snakemake) as log:
     from linepose.tables import read_table, write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
-    settings = AdjustmentSettings.model_validate(snakemake.params.adjustment)
+    settings = AdjustmentSection.model_validate(snakemake.params.adjustment)
     survey = survey_from_table(read_table(snakemake.input.observations, OBSERVATIONS))
     estimator = adjustment_estimator(survey, platform_conditions(platform, adjustment=settings))
     tables = adjusted_tables(estimator, snakemake.params.seed)

@@ -1,4 +1,4 @@
-from .adjustment.settings import AdjustmentSettings as AdjustmentSettings
+from .adjustment.settings import AdjustmentSection as AdjustmentSection
 from .check.platform import check_platform as check_platform
 from .errors import EstimationError as EstimationError
 from .errors import InputError as InputError

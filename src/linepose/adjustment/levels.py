@@ -3,12 +3,13 @@
 Navigation errors are scaled in units of the reported sigmas, pixels in the camera's sigma, lateness in lines.
 """
 
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
 from linepose.arrays import Floats
+from linepose.settings import Settings
 
 
 class Levels(NamedTuple):
@@ -35,12 +36,11 @@ MEDIAN: Final = Levels(0.5, 0.5, 0.5, 0.5, 0.5, 300.0, 1.0)
 LOG_SIGMA: Final = Levels(1.5, 1.5, 1.5, 1.5, 0.7, 2.0, 0.5)
 
 
-@dataclass(frozen=True)
-class LevelPriors:
+class LevelPriors(Settings):
     """Log-normal prior of every level: its median, and its sigma in the natural logarithm."""
 
-    median: Levels = MEDIAN
-    log_sigma: Levels = LOG_SIGMA
+    median: Levels = Field(MEDIAN, description=f"Median of each: {', '.join(LEVEL_NAMES)}.")
+    log_sigma: Levels = Field(LOG_SIGMA, description="Sigma of the natural logarithm of each, in the same order.")
 
     def log_density(self, log_levels: Floats, estimated: Floats) -> float:
         """Logarithm of the density of the logarithms of the levels (7,), but for a constant; those `estimated` count.

@@ -14,27 +14,39 @@ HAND_POSITION_M: Final = 0.1
 HAND_ROTATION_RAD: Final = float(np.deg2rad(2.0))
 
 
-class AdjustmentSettings(Settings):
-    """How the adjustment is done."""
+class AdjustmentSection(Settings):
+    """How the adjustment is done.
 
-    hand_measured_prior: bool = Field(True, description="Whether the hand measurement counts, or is but a start.")
+    Examples
+    --------
+    >>> import linepose
+    >>> linepose.AdjustmentSection(n_samples=500).n_draws
+    200
+    """
+
     priors: LevelPriors = Field(LevelPriors(), description="Log-normal priors of the levels.")
-    start: Levels = Field(START, description="Levels to start from.")
+    start: Levels = Field(START, description="Levels to start from, in the order of the priors.")
     line_period_s: PositiveFloat | None = Field(
         None, description="Duration of a line (s); what time stamps are multiples of if null."
-    )
-    clock_offset_sigma_s: PositiveFloat | None = Field(
-        None,
-        description="How far the clocks of scan and navigation may differ, as sigma of a normal distribution about "
-        "zero (s); the offset is then estimated with the pose. Not estimated if null.",
     )
     tails: bool = Field(
         True, description="Whether views and single measurements may err far more than the rest, where the data say so."
     )
     n_draws: int = Field(200, ge=10, description="Draws of the levels.")
     n_samples: PositiveInt = Field(2000, description="Draws of the pose.")
-    seed: NonNegativeInt = Field(0, description="Seed of all draws.")
     max_rounds: PositiveInt = Field(12, description="Rounds of Gauss-Newton and levels in turn.")
+
+
+class AdjustmentSettings(AdjustmentSection):
+    """How one adjustment is done, and what else is known and sought."""
+
+    hand_measured_prior: bool = Field(True, description="Whether the hand measurement counts, or is but a start.")
+    clock_offset_sigma_s: PositiveFloat | None = Field(
+        None,
+        description="How far the clocks of scan and navigation may differ, as sigma of a normal distribution about "
+        "zero (s); the offset is then estimated with the pose. Not estimated if null.",
+    )
+    seed: NonNegativeInt = Field(0, description="Seed of all draws.")
 
 
 def default_hand_covariance() -> Floats:

@@ -137,7 +137,7 @@ def _hand(new: NewPlatform) -> list[str]:
 
 
 def _noise_model() -> list[str]:
-    return [f"noise_model: {DEFAULT.name} # {DEFAULT.meaning}; the others: docs/noise_models.md"]
+    return [f"noise_model: {DEFAULT.name} # {DEFAULT.meaning}; docs/adjustment.md"]
 
 
 def _navigation(new: NewPlatform) -> list[str]:

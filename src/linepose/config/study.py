@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic import Field, NonNegativeInt
 
-from linepose.adjustment.settings import AdjustmentSettings
+from linepose.adjustment.settings import AdjustmentSection
 from linepose.config.coverage import CoverageSection
 from linepose.config.platform import read_yaml
 from linepose.estimation.optimise import Search
@@ -40,7 +40,7 @@ class Study(Settings):
     search: Search = Field(Search(), description="Optimisation.")
     outliers: OutlierSettings = Field(OutlierSettings(), description="Outlier removal.")
     sampling: SamplingSettings = Field(SamplingSettings(), description="MCMC, of noise models with a likelihood.")
-    adjustment: AdjustmentSettings = Field(AdjustmentSettings(), description="The adjustment.")
+    adjustment: AdjustmentSection = Field(AdjustmentSection(), description="The adjustment.")
     coverage: CoverageSection = Field(CoverageSection(), description="Coverage study; not part of the main job.")
 
 

@@ -84,5 +84,5 @@ class AdjustmentEstimator(Estimator):
 
 def adjustment_estimator(survey: Survey, conditions: Conditions) -> AdjustmentEstimator:
     """The adjustment of a survey under these conditions."""
-    settings = conditions.adjustment.replaced(hand_measured_prior=conditions.prior)
+    settings = AdjustmentSettings(**dict(conditions.adjustment), hand_measured_prior=conditions.prior)
     return AdjustmentEstimator(survey, conditions.camera, conditions.hand_measured, settings)

@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from linepose.adjustment.settings import AdjustmentSettings
+from linepose.adjustment.settings import AdjustmentSection
 from linepose.arrays import Floats
 from linepose.estimation.optimise import Search
 from linepose.estimation.sampling import SamplingSettings
@@ -47,7 +47,7 @@ class Conditions:
     prior: bool = True
     search: Search = field(default_factory=Search)
     sampling: SamplingSettings = field(default_factory=SamplingSettings)
-    adjustment: AdjustmentSettings = field(default_factory=AdjustmentSettings)
+    adjustment: AdjustmentSection = field(default_factory=AdjustmentSection)
 
 
 class Estimator(ABC):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linepose.adjustment.settings import AdjustmentSettings
+from linepose.adjustment.settings import AdjustmentSection
 from linepose.estimation.estimator import Conditions
 from linepose.estimation.noise_models import estimator_of, likelihood_of
 from linepose.estimation.noise_models import noise_model as entry_of
@@ -19,7 +19,7 @@ def warm_up(noise_model: str) -> None:
     """Evaluate a noise model, by name, once in every way that there is."""
     if not entry_of(noise_model).removes_outliers:
         hand = HandMeasured(position_m=(0.0, 0.0, 0.0), euler_deg=(0.0, 0.0, 0.0))
-        few = AdjustmentSettings(n_draws=10, n_samples=10)
+        few = AdjustmentSection(n_draws=10, n_samples=10)
         estimator_of(noise_model, _survey(), Conditions(_CAMERA, hand, adjustment=few)).estimate(np.zeros(6))
         return
     likelihood = likelihood_of(noise_model, _survey(), _CAMERA)

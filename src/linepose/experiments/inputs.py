@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pandas as pd
 import pyarrow as pa
 
-from linepose.adjustment.settings import AdjustmentSettings
+from linepose.adjustment.settings import AdjustmentSection
 from linepose.config.platform import Platform
 from linepose.estimation.estimator import Conditions, Estimator
 from linepose.estimation.optimise import Search
@@ -98,7 +98,7 @@ class Inputs:
             platform,
             Search.model_validate(self.study["search"]),
             SamplingSettings.model_validate(self.study["sampling"]),
-            AdjustmentSettings.model_validate(self.study["adjustment"]),
+            AdjustmentSection.model_validate(self.study["adjustment"]),
             camera,
         )
 

@@ -9,7 +9,7 @@ import pyarrow as pa
 from linepose.adjustment.levels import LEVEL_NAMES
 from linepose.adjustment.reprojection import Reprojection, reprojection
 from linepose.adjustment.result import Adjustment
-from linepose.adjustment.settings import AdjustmentSettings
+from linepose.adjustment.settings import AdjustmentSection
 from linepose.arrays import Floats
 from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.diagnostics import split_r_hat
@@ -76,7 +76,7 @@ def adjusted_tables(estimator: AdjustmentEstimator, seed: int) -> dict[str, pd.D
 
 
 def error_tables(
-    survey: Survey, found: Adjustment, errors: Reprojection, settings: AdjustmentSettings
+    survey: Survey, found: Adjustment, errors: Reprojection, settings: AdjustmentSection
 ) -> dict[str, pd.DataFrame]:
     """What the errors were: levels, and each view's and each measurement's corrections and weight."""
     return {
@@ -86,7 +86,7 @@ def error_tables(
     }
 
 
-def level_table(found: Adjustment, settings: AdjustmentSettings) -> pd.DataFrame:
+def level_table(found: Adjustment, settings: AdjustmentSection) -> pd.DataFrame:
     """One row a level with what holds it with 95 %, before and after the data; columns as in `LEVELS`."""
     median, log_sigma = np.asarray(settings.priors.median), np.asarray(settings.priors.log_sigma)
     return pd.DataFrame(

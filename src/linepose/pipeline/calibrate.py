@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
-from linepose.adjustment.settings import AdjustmentSettings
+from linepose.adjustment.settings import AdjustmentSection
 from linepose.config.platform import Platform
 from linepose.config.study import Study
 from linepose.errors import InputError
@@ -72,7 +72,7 @@ class CalibrationSettings(Settings):
     minimum_observations: int = _as_in(OutlierSettings, "minimum_observations")
     search: Search = _as_in(Study, "search")
     sampling: SamplingSettings = _as_in(Study, "sampling")
-    adjustment: AdjustmentSettings = _as_in(Study, "adjustment")
+    adjustment: AdjustmentSection = _as_in(Study, "adjustment")
     seed: NonNegativeInt = _as_in(Study, "seed")
 
 

@@ -1,6 +1,6 @@
 """What a platform's file asks to estimate with."""
 
-from linepose.adjustment.settings import AdjustmentSettings
+from linepose.adjustment.settings import AdjustmentSection
 from linepose.config.platform import Platform
 from linepose.estimation.estimator import Conditions, Estimator
 from linepose.estimation.noise_models import estimator_of, likelihood_of
@@ -23,7 +23,7 @@ def platform_conditions(
     platform: Platform,
     search: Search | None = None,
     sampling: SamplingSettings | None = None,
-    adjustment: AdjustmentSettings | None = None,
+    adjustment: AdjustmentSection | None = None,
     camera: Camera | None = None,
 ) -> Conditions:
     """What is known of a platform beside its survey; with another camera than its own if given."""
@@ -33,7 +33,7 @@ def platform_conditions(
         platform.prior == "hand_measured",
         search or Search(),
         sampling or SamplingSettings(),
-        adjustment or AdjustmentSettings(),
+        adjustment or AdjustmentSection(),
     )
 
 

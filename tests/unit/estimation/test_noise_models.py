@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-from linepose.adjustment.settings import AdjustmentSettings
+from linepose.adjustment.settings import AdjustmentSection
 from linepose.errors import InputError, LineposeError
 from linepose.estimation.adjustment_estimator import GAUSS_NEWTON, AdjustmentEstimator
 from linepose.estimation.estimator import Conditions
@@ -27,7 +27,7 @@ from unit.likelihood.small_survey import CAMERA, POSE, Truth, make_survey, witho
 
 ROOT = Path(__file__).parents[3]
 MODELS = pytest.mark.parametrize("name", NOISE_MODELS)
-QUICK = AdjustmentSettings(n_draws=10, n_samples=10)
+QUICK = AdjustmentSection(n_draws=10, n_samples=10)
 
 
 def by_hand(**changed):

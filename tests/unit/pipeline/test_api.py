@@ -26,7 +26,7 @@ from unit.recorded_files import simulated_survey, write_platform_files
 
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SHORT = linepose.SamplingSettings(n_walkers=24, n_burn_in=40, n_steps=60)
-QUICK = linepose.CalibrationSettings(adjustment=linepose.AdjustmentSettings(n_draws=50, n_samples=1000))
+QUICK = linepose.CalibrationSettings(adjustment=linepose.AdjustmentSection(n_draws=50, n_samples=1000))
 N_PASSES = 16
 FUNCTIONS = [name for name in linepose.__all__ if inspect.isfunction(getattr(linepose, name))]
 IN_EXAMPLES = {"linepose": linepose, "np": np}
