@@ -8,7 +8,8 @@ with stage(snakemake) as log:
     from linepose.adjustment.settings import AdjustmentSection
     from linepose.config.platform import Platform
     from linepose.estimation.adjustment_estimator import adjustment_estimator
-    from linepose.pipeline.adjusted_tables import ADJUSTED, STAGES, adjusted_tables
+    from linepose.pipeline.adjusted_schemas import ADJUSTED, STAGES
+    from linepose.pipeline.adjusted_tables import adjusted_tables
     from linepose.pipeline.file_list import write_file_list
     from linepose.pipeline.platform_estimator import platform_conditions
     from linepose.pipeline.stages import SAMPLES

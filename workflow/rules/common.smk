@@ -15,7 +15,7 @@ from linepose.experiments.registry import (
 )
 from linepose.output.report.summary_file import summaries_on_disk
 from linepose.pipeline import code_digest, sections
-from linepose.pipeline.adjusted_tables import ADJUSTED, STAGES
+from linepose.pipeline.adjusted_schemas import ADJUSTED, STAGES
 from linepose.pipeline.file_list import lost_files
 from linepose.pipeline.parent_process import COMMAND, SNAKEMAKE, exit_with_process
 from linepose.pipeline.run_lock import hold_run_lock

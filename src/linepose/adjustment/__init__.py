@@ -2,19 +2,15 @@
 
 `adjust` is what a user calls. Mathematics first: `process` says what the errors are, `whitening` makes measurements
 independent, `normal` and `solve` find the minimum of chi squared, `reml` the levels, `curvature` and `posterior` how
-sure the pose is.
+sure the pose is. Names are imported when they are first used: configuration needs the settings only.
 """
 
 from pathlib import Path
+
+import lazy_loader
 
 from linepose.compiling.cache import forget_outdated
 
 forget_outdated(Path(__file__).parent)
 
-from linepose.adjustment.adjust import adjust  # noqa: E402
-from linepose.adjustment.levels import LevelPriors, Levels  # noqa: E402
-from linepose.adjustment.measurements import KnownPoints  # noqa: E402
-from linepose.adjustment.result import Adjustment, Diagnostics  # noqa: E402
-from linepose.adjustment.settings import AdjustmentSettings  # noqa: E402
-
-__all__ = ["Adjustment", "AdjustmentSettings", "Diagnostics", "KnownPoints", "LevelPriors", "Levels", "adjust"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -27,7 +27,6 @@ from linepose.errors import EstimationError
 from linepose.geometry import rotations
 
 HELD: Final = (0.25, 4.0)  # range in which the eigenvalues of H in units of N are held
-TRUSTED_EIGENVALUE: Final = 0.3  # the least one below which the covariance is not to be trusted
 STEP_SIGMAS: Final = 0.3
 _TOLERANCE: Final = 1e-5
 

@@ -7,7 +7,6 @@ from scipy.special import softmax
 
 from linepose.arrays import Floats
 
-TRUSTED_SHAPE: Final = 0.7  # of the Pareto tail, above which the weights cannot be trusted
 _FEWEST_DRAWS: Final = 25  # of which a fifth are a tail long enough to fit
 
 

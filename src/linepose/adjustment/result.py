@@ -2,19 +2,19 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from linepose.adjustment.curvature import TRUSTED_EIGENVALUE
-from linepose.adjustment.importance import TRUSTED_SHAPE
 from linepose.adjustment.levels import Levels
+from linepose.adjustment.thresholds import (
+    DISAGREEMENT_SIGMAS,
+    FEWEST_EFFECTIVE_DRAWS,
+    TRUSTED_EIGENVALUE,
+    TRUSTED_SHAPE,
+)
 from linepose.arrays import Floats
-
-FEWEST_EFFECTIVE_DRAWS: Final = 20.0
-DISAGREEMENT_SIGMAS: Final = 3.0
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,8 @@ from linepose.experiments.experiment import Experiment, Section
 from linepose.experiments.inputs import Inputs, log_rows
 from linepose.experiments.splits import SPLITS, random_splits, sigma_factor
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
-from linepose.pipeline.adjusted_tables import ADJUSTED, error_tables
+from linepose.pipeline.adjusted_schemas import ADJUSTED
+from linepose.pipeline.adjusted_tables import error_tables
 from linepose.pipeline.batches import batch_ranges
 from linepose.settings import Settings
 from linepose.tables import floats, optional_floats, texts

@@ -21,8 +21,8 @@ def hand_measured_sigma(pose: ArrayLike) -> Floats:
 
 def as_printed(poses: pd.DataFrame) -> pd.DataFrame:
     """Poses by their stage, the hand-measured one's sigmas as the paper prints them; `poses` as in `POSE`."""
-    table = poses.set_index("stage")
+    table = poses.set_index("stage").copy()
     if "hand_measured" in table.index:
-        pose = table.loc["hand_measured", list(POSE_COLUMNS)].to_numpy(dtype=float)
+        pose = table.loc["hand_measured", list(POSE_COLUMNS)].to_numpy(dtype=float, copy=True)
         table.loc["hand_measured", list(SIGMA_COLUMNS)] = hand_measured_sigma(pose)
     return table

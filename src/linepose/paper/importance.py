@@ -21,7 +21,6 @@ from linepose.likelihood.base import Likelihood
 
 DEGREES_OF_FREEDOM: Final = 5
 FIRST_SHARE: Final = 0.25  # of the draws, from which the proposal is fitted anew
-TRUSTED_SHAPE: Final = 0.7
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,14 @@
 
 from typing import Final
 
-from linepose.adjustment.curvature import TRUSTED_EIGENVALUE
-from linepose.adjustment.faults import CLOCK, JUMP, LABEL
-from linepose.adjustment.importance import TRUSTED_SHAPE
-from linepose.adjustment.result import FEWEST_EFFECTIVE_DRAWS
+from linepose.adjustment.thresholds import (
+    CLOCK,
+    FEWEST_EFFECTIVE_DRAWS,
+    JUMP,
+    LABEL,
+    TRUSTED_EIGENVALUE,
+    TRUSTED_SHAPE,
+)
 from linepose.pipeline.checks import AdjustedEvidence, Check, Evidence, Level
 
 _MANY: Final = 3  # one view in so many may be far off

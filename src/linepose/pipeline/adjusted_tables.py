@@ -4,7 +4,6 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
 
 from linepose.adjustment.levels import LEVEL_NAMES
 from linepose.adjustment.reprojection import Reprojection, reprojection
@@ -13,45 +12,13 @@ from linepose.adjustment.settings import AdjustmentSection
 from linepose.arrays import Floats
 from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.diagnostics import split_r_hat
-from linepose.estimation.outliers import OUTLIERS
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS, point_rows
-from linepose.pipeline.stages import DIAGNOSTICS, LAPLACE_SIGMA_COLUMNS, OPTIMA, POSE
+from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, NORMALISED_COLUMNS, STAGE
+from linepose.pipeline.residual_tables import point_rows
+from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS
 from linepose.survey.hand_measured import HandMeasured
-from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS, Survey
-from linepose.tables import floats, optional_floats, texts, whole_numbers
+from linepose.survey.observations import Survey
 
-STAGE: Final = "inliers"
-CORRECTION_COLUMNS: Final = tuple(f"correction_{name}" for name in (*POSITION_COLUMNS, *EULER_COLUMNS))
-NORMALISED_COLUMNS: Final = ("normalised_along", "normalised_across")
-
-LEVELS: Final = pa.schema(
-    [
-        *texts("level"),
-        *floats("value"),
-        *optional_floats("low", "high"),
-        *floats("prior_median", "prior_low", "prior_high"),
-    ]
-)
-VIEWS: Final = pa.schema(
-    [*whole_numbers("observation"), *optional_floats("weight", *CORRECTION_COLUMNS), *texts("fault")]
-)
-MEASUREMENTS: Final = pa.schema(
-    [
-        *whole_numbers("observation", "point", "time_us"),
-        *floats(*CORRECTION_COLUMNS, "weight"),
-        *optional_floats(*NORMALISED_COLUMNS),
-    ]
-)
-STAGES: Final = {
-    "outliers": OUTLIERS,
-    "optima": OPTIMA,
-    "diagnostics": DIAGNOSTICS,
-    "pose": POSE,
-    "residuals": RESIDUALS,
-    "estimated_points": ESTIMATED_POINTS,
-}
-ADJUSTED: Final = {"levels": LEVELS, "adjusted_views": VIEWS, "adjusted_measurements": MEASUREMENTS}
 _INTERVAL: Final = 1.959963984540054  # sigmas, of 95 %
 
 

@@ -16,7 +16,7 @@ from linepose.estimation.outliers import OUTLIERS, OutlierSettings, removal_orde
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS, euler_covariance, euler_pose
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
-from linepose.pipeline.adjusted_tables import ADJUSTED, LEVELS, MEASUREMENTS, VIEWS
+from linepose.pipeline.adjusted_schemas import ADJUSTED, LEVELS, MEASUREMENTS, VIEWS
 from linepose.pipeline.exports.options import ExportOptions
 from linepose.pipeline.exports.write import export_calibration
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS

@@ -9,7 +9,7 @@ from scipy.special import chdtri
 
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
-from linepose.pipeline.adjusted_tables import VIEWS
+from linepose.pipeline.adjusted_schemas import VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence
 from linepose.pipeline.pose_tables import PoseNumber, rotation_vector_numbers

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import norm, t
 
-from linepose.adjustment.importance import TRUSTED_SHAPE, smoothed_weights
+from linepose.adjustment.importance import smoothed_weights
+from linepose.adjustment.thresholds import TRUSTED_SHAPE
 
 
 def log_ratios(proposal, count=1000):

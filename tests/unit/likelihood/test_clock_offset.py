@@ -50,7 +50,6 @@ def test_at_no_offset_it_is_the_model_itself(simulated, model):
     assert model.parameter_names == (*POSE_COLUMNS, "clock_offset_s")
     np.testing.assert_array_equal(model.start(pose), [*pose, 0.0])
     assert model.half_widths(2.0, 3.0).tolist() == [2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 0.1]
-    assert model.parameter_priors()["clock_offset_s"] == (0.0, pytest.approx(0.1 / np.sqrt(3)))
 
 
 def test_rows_are_what_single_vectors_are(simulated, model):

@@ -17,7 +17,7 @@ from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
 from linepose.config.study import check_study
 from linepose.estimation.outliers import OutlierSettings
-from linepose.pipeline.adjusted_tables import VIEWS
+from linepose.pipeline.adjusted_schemas import VIEWS
 from linepose.pipeline.stages import OPTIMA
 from linepose.survey.observations import COVARIANCE_COLUMNS, OBSERVATIONS, survey_from_table, table_from_survey
 from linepose.tables import read_table
