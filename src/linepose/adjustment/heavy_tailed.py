@@ -12,10 +12,14 @@ from linepose.adjustment.reml import Restricted, most_likely
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.solve import solve
 from linepose.adjustment.state import Knowledge, State
-from linepose.adjustment.tails import TailWeights, bound_of_weights, expected_weights, unit_tail_weights
+from linepose.adjustment.tails import TailKind, TailWeights, bound_of_weights, expected_weights, unit_tail_weights
 from linepose.errors import EstimationError
 
-SCREEN_NATS: Final = 10.0  # by which heavy tails may look worse at the normal model's estimate and are yet tried
+SCREEN_NATS: Final = {  # by which heavy tails may look worse at the normal model's estimate and are yet tried
+    TailKind.CONSTANTS: 4.0,
+    TailKind.VIEWS: 10.0,
+    TailKind.MEASUREMENTS: 10.0,
+}
 SINGLE_NATS: Final = 40.0  # by which tails of single measurements must win: their many weights are taken for known
 _WEIGHT_TOLERANCE: Final = 0.03  # of a logarithm
 _LEVEL_TOLERANCE: Final = 0.02  # of a logarithm
@@ -33,7 +37,7 @@ def with_tails(
     start: State,
     settings: AdjustmentSettings,
 ) -> Estimate:
-    """The best of the normal model, tails of views, and tails of views and single measurements, by evidence.
+    """The best of the normal model, and of tails of constants, of views and of single measurements, by evidence.
 
     `guided` knows the hand measurement whatever the settings say: where many views are bad, the weights are found with
     its help before the pose is let go. Raises EstimationError where neither model has an estimate.
@@ -43,13 +47,13 @@ def with_tails(
         normal = estimate(measurements, knowledge, start, settings.start, unit_weights(measurements), settings)
     except EstimationError as error:
         failure = error
-    if not settings.tails or (normal is not None and normal.converged and _hopeless(normal)):
+    if not settings.tails:
         if normal is None:
             raise failure or EstimationError("adjustment: no estimate")
         return normal
     candidates = [normal] if normal is not None else []
-    for alone in (False, True):
-        tails = unit_tail_weights(measurements, alone=alone)
+    for kind in TailKind if normal is None or not normal.converged else _promising(normal):
+        tails = unit_tail_weights(measurements, kind)
         try:
             heavy, tails = _heavy_tailed(measurements, guided, start, settings.start, tails, settings)
             if knowledge.hand is not guided.hand:
@@ -70,18 +74,18 @@ def _preference(one: Estimate) -> float:
     return one.log_evidence - SINGLE_NATS * alone
 
 
-def _hopeless(normal: Estimate) -> bool:
-    """Whether heavy tails are so much worse at the normal model's estimate that they need not be tried."""
+def _promising(normal: Estimate) -> list[TailKind]:
+    """The tails that are not so much worse at the normal model's estimate that they need not be tried."""
     restricted = normal.restricted
-    measurements = restricted.measurements
-    evidence = -np.inf
-    for alone in (False, True):
-        tails = unit_tail_weights(measurements, alone=alone)
+    measurements, found = restricted.measurements, []
+    for kind in TailKind:
+        tails = unit_tail_weights(measurements, kind)
         for _ in range(_SCREEN_SWEEPS):
             tails = expected_weights(measurements, normal.solution.model, normal.levels, tails)
         density = replace(restricted, weights=tails.applied(measurements)).negative_log_density(normal.log_levels)
-        evidence = max(evidence, bound_of_weights(measurements, tails) - density)
-    return bool(evidence < normal.log_evidence - SCREEN_NATS)
+        if bound_of_weights(measurements, tails) - density > normal.log_evidence - SCREEN_NATS[kind]:
+            found.append(kind)
+    return found
 
 
 def _heavy_tailed(

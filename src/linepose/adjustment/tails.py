@@ -15,11 +15,13 @@ levels becomes a lower bound of the heavy-tailed model's evidence,
 
     -1/2 (chi^2 + log|C| + log|N|)_w + log prior + sum [ d/2 (E log w - log E w) - KL(q(w) | prior) ],
 
-which compares with the normal model's own, and tells tails of views alone from tails of single measurements too. Where
+which compares with the normal model's own, and tells tails of constants from those of whole views and of single
+measurements too. The bound of fewer weights is the tighter one. Where
 the normal model explains the data as well, it stands, and no sigma is lost to weights that nothing asks for.
 """
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Final
 
 import numpy as np
@@ -37,27 +39,35 @@ CONSTANT_DIMENSION: Final = 6
 MEASUREMENT_DIMENSION: Final = 2
 
 
+class TailKind(IntEnum):
+    """What has heavy tails: a view's constant; its noise too; each measurement's noise too."""
+
+    CONSTANTS = 0
+    VIEWS = 1
+    MEASUREMENTS = 2
+
+
 @dataclass(frozen=True)
 class TailWeights:
     """Expected weights: of each view's constant (N,) and of its noise (N,), of each measurement alone (L,).
 
-    `alone`: whether single measurements have tails; without, their weights are one.
+    kind: what has tails; the weights of all else are one.
     """
 
     constant: Floats
     noise: Floats
     single: Floats
-    alone: bool
+    kind: TailKind
 
     def applied(self, measurements: Measurements) -> Weights:
         """As the error process takes them."""
         return Weights(self.constant, self.noise[measurements.view] * self.single)
 
 
-def unit_tail_weights(measurements: Measurements, *, alone: bool) -> TailWeights:
+def unit_tail_weights(measurements: Measurements, kind: TailKind) -> TailWeights:
     """Every weight one."""
     of_views = np.ones(measurements.n_views)
-    return TailWeights(of_views, of_views, np.ones(len(measurements.u_px)), alone)
+    return TailWeights(of_views, of_views, np.ones(len(measurements.u_px)), kind)
 
 
 def expected_weights(measurements: Measurements, model: Model, levels: Levels, before: TailWeights) -> TailWeights:
@@ -69,18 +79,20 @@ def expected_weights(measurements: Measurements, model: Model, levels: Levels, b
     of_noise = np.maximum(MEASUREMENT_DIMENSION - slopes.by_measurement, 0.0) / weights.of_measurement
     view, nu = measurements.view, DEGREES_OF_FREEDOM
     together = np.bincount(view, weights=before.single * of_noise, minlength=measurements.n_views)
-    noise = (nu + MEASUREMENT_DIMENSION * _counts(measurements)) / (nu + together)
-    single = before.single
-    if before.alone:
+    noise, single = before.noise, before.single
+    if before.kind >= TailKind.VIEWS:
+        noise = (nu + MEASUREMENT_DIMENSION * _counts(measurements)) / (nu + together)
+    if before.kind >= TailKind.MEASUREMENTS:
         single = (nu + MEASUREMENT_DIMENSION) / (nu + noise[view] * of_noise)
-    return TailWeights((nu + CONSTANT_DIMENSION) / (nu + of_constant), noise, single, before.alone)
+    return TailWeights((nu + CONSTANT_DIMENSION) / (nu + of_constant), noise, single, before.kind)
 
 
 def bound_of_weights(measurements: Measurements, weights: TailWeights) -> float:
     """What the weights add to the logarithm of the evidence's lower bound."""
     of_views = _bound(weights.constant, np.full(measurements.n_views, CONSTANT_DIMENSION))
-    of_views += _bound(weights.noise, MEASUREMENT_DIMENSION * _counts(measurements))
-    if not weights.alone:
+    if weights.kind >= TailKind.VIEWS:
+        of_views += _bound(weights.noise, MEASUREMENT_DIMENSION * _counts(measurements))
+    if weights.kind < TailKind.MEASUREMENTS:
         return of_views
     return of_views + _bound(weights.single, np.full(len(weights.single), MEASUREMENT_DIMENSION))
 

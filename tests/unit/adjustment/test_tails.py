@@ -67,6 +67,18 @@ def test_a_clock_that_is_off_takes_the_weight_of_a_views_constant(survey, clean)
     assert np.all(np.abs(found.pose - clean.pose) < 3 * clean.sigma)
 
 
+def test_one_view_off_by_a_few_sigmas_moves_the_pose_little(survey, clean):
+    """A displacement of a view by ten sigmas, which levels alone could take for a larger constant of all views."""
+    position = survey.position_m.copy()
+    position[5] += 0.15 * np.array([1.0, 0.6, 0.0])
+    found = adjust(replace(survey, position_m=position), CAMERA, timed_survey.POSE, settings=QUICK)
+    assert np.argmin(found.view_weight) == 5
+    assert found.view_weight[5] < 0.2
+    # such tails are of constants only: all noise keeps its weight
+    assert np.nanmin(found.measurement_weight) == 1
+    assert np.all(np.abs(found.pose - clean.pose) < 1.5 * clean.sigma)
+
+
 def test_wrong_labels_lose_their_weight_alone(survey, clean):
     u_px = survey.u_px.copy()
     wrong = [(1, 2), (4, 6), (7, 0), (10, 5), (2, 7)]

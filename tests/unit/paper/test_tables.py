@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.paper.hand_measured import hand_measured_sigma
 from linepose.paper.tables import PUBLISHED_NAVIGATION, PUBLISHED_POSES, markdown, published_tables
 from linepose.survey.navigation import SIGMA_COLUMNS as NAVIGATION_SIGMA_COLUMNS
 from linepose.tables import read_table, write_table
@@ -43,7 +44,13 @@ def test_differences_are_in_published_sigmas(tables):
     for name, shift, n_sets in (("table3", 0.25, 3), ("table4", -0.5, 2), ("table5", 1.0, 2)):
         assert len(tables[name]) == 6 * n_sets
         np.testing.assert_allclose(tables[name]["difference_sigmas"], shift, rtol=1e-9)
-        np.testing.assert_allclose(tables[name]["obtained_sigma"], 2 * tables[name]["published_sigma"])
+        table = tables[name][tables[name]["set"] != "hand_measured"]
+        np.testing.assert_allclose(table["obtained_sigma"], 2 * table["published_sigma"])
+
+
+def test_hand_measured_sigmas_are_those_of_the_papers_rule(tables):
+    table = tables["table3"].set_index("set").loc["hand_measured"]
+    np.testing.assert_allclose(table["obtained_sigma"], hand_measured_sigma(table["obtained"]), rtol=1e-12)
 
 
 def test_navigation_table_is_in_degrees_and_relative(tables):
