@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from linepose.arrays import Floats
+from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.evidence import gather_evidence, pose_numbers
@@ -25,6 +26,18 @@ class PlatformSummary:
     n_accepted: int
     neg_log_likelihood: float
     simulated: bool
+
+    @property
+    def removes_outliers(self) -> bool:
+        """Whether the noise model removes observations; the adjustment weights them."""
+        return noise_model(self.noise_model).removes_outliers
+
+    @property
+    def observations_in_words(self) -> str:
+        """How many observations the pose rests on."""
+        if self.removes_outliers:
+            return f"{self.n_accepted} of {self.n_observations} observations accepted"
+        return f"all {self.n_observations} observations, each with its weight"
 
     @property
     def plain_pose(self) -> list[PoseNumber]:

@@ -8,6 +8,7 @@ import pyarrow as pa
 from matplotlib.figure import Figure
 
 from linepose.config.platform import Platform
+from linepose.estimation.noise_models import noise_model
 from linepose.experiments.registry import SECTIONS
 from linepose.pipeline.calibration import Calibration
 from linepose.tables import texts
@@ -36,3 +37,8 @@ def without(key: str) -> Callable[[Platform], str]:
     """Why a platform has no figure of the experiment of this key: it was not asked for."""
     told = f"This experiment was not asked for: experiments.{key} is null in the platform's file."
     return lambda platform: "" if SECTIONS[key].of(platform) else told
+
+
+def without_removal(told: str) -> Callable[[Platform], str]:
+    """Why a platform whose noise model removes no observation has no such figure: `told`."""
+    return lambda platform: "" if noise_model(platform.noise_model).removes_outliers else told

@@ -10,7 +10,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
 from linepose.estimation.outliers import OUTLIERS, removal_order
-from linepose.output.figures.entry import FigureEntry
+from linepose.output.figures.entry import FigureEntry, without_removal
 from linepose.output.figures.style import RED, WIDE_IN, blank_figure, styled
 from linepose.pipeline.table_checks import accepted_rows, usable_rows
 
@@ -90,5 +90,6 @@ FIGURES: Final = (
         ("outliers",),
         lambda r: outlier_matrix(r.results.table("outliers", OUTLIERS)),
         lambda r: outlier_matrix_caption(r.results.table("outliers", OUTLIERS), r.threshold_px),
+        without_removal("The adjustment removes no observation: see the figure on weights."),
     ),
 )

@@ -5,8 +5,13 @@ from typing import Final
 from linepose.output.figures import (
     basin,
     corner_plot,
+    corrections,
+    estimates,
+    halves,
     identifiability,
+    levels,
     mapping,
+    normalised_residuals,
     outlier_matrix,
     platform_sketch,
     repeatability,
@@ -16,10 +21,17 @@ from linepose.output.figures import (
     survey_plan,
     trace,
     uncertainty,
+    weights,
 )
 from linepose.output.figures.entry import FigureEntry
 
 FIGURES: Final[tuple[FigureEntry, ...]] = (
+    *estimates.FIGURES,
+    *halves.FIGURES,
+    *levels.FIGURES,
+    *corrections.FIGURES,
+    *weights.FIGURES,
+    *normalised_residuals.FIGURES,
     *survey_plan.FIGURES,
     *scan.FIGURES,
     *outlier_matrix.FIGURES,

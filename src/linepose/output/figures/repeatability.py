@@ -11,9 +11,9 @@ from linepose.arrays import Floats
 from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.experiments.repeatability import REPEATABILITY
-from linepose.experiments.repeatability import SECTION as REPEATABILITY_SECTION
 from linepose.experiments.splits import SPLITS, known_distances, sigma_factor
 from linepose.geometry.pose import N_PARAMETERS
+from linepose.output.adjusted import has_own_halves, is_adjusted
 from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, GREY, HALF_PAGE_IN, RED, blank_figure, styled
 from linepose.pipeline.calibration import Calibration
@@ -84,9 +84,10 @@ def _named_pair(r: Calibration) -> pd.DataFrame | None:
 
 
 def _without_splits(platform: Platform) -> str:
-    settings = REPEATABILITY_SECTION.of(platform)
+    if is_adjusted(platform):
+        return "The figure on random halves shows the same."
     told = "This experiment was not asked for: experiments.repeatability has no splits in the platform's file."
-    return "" if settings and settings.n_splits else told
+    return "" if has_own_halves(platform) else told
 
 
 FIGURES: Final = (

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from linepose.estimation.noise_models import noise_model
 from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, GREY, SKY, WIDE_IN, blank_figure, styled
 from linepose.pipeline.calibration import Calibration
@@ -56,19 +57,22 @@ def residuals(table: pd.DataFrame, by: str) -> Figure:
     return figure
 
 
-def residuals_caption(table: pd.DataFrame, by: str) -> str:
-    """How large the errors are beside their sigmas, and what they have in common."""
+def residuals_caption(table: pd.DataFrame, by: str, independent: bool = True) -> str:
+    """How large the errors are beside their sigmas, and what they have in common.
+
+    `independent`: whether the noise model takes the points of a view to err independently.
+    """
     rows = _inliers(table)
     rms = float(np.sqrt((rows["error_px"] ** 2).mean()))
     expected = float(np.sqrt((rows["sigma_px"] ** 2).mean()))
     size = f"RMS error {rms:.1f} px, where sigmas of {expected:.1f} px in its direction were expected. "
     if by == "observation":
         common = max(intraclass_correlation(rows, column) for column in ("error_u_px", "error_v_px"))
+        beside = "where the published noise model takes them as independent" if independent else "which is allowed for"
         told = (
             ""
             if np.isnan(common)
-            else f"Up to {100 * max(common, 0):.0f} % of the variance is common to all points of a view, where the "
-            "published noise model takes them as independent."
+            else f"Up to {100 * max(common, 0):.0f} % of the variance is common to all points of a view, {beside}."
         )
         return f"Observed minus reprojected position by observation. {size}{told}".strip()
     means = rows.groupby(by)[["error_u_px", "error_v_px"]].mean().abs().max(axis=1)
@@ -87,7 +91,9 @@ def _residuals(by: str) -> Callable[[Calibration], Figure]:
 
 
 def _residuals_caption(by: str) -> Callable[[Calibration], str]:
-    return lambda r: residuals_caption(r.results.table("residuals", RESIDUALS), by)
+    return lambda r: residuals_caption(
+        r.results.table("residuals", RESIDUALS), by, noise_model(r.noise_model).removes_outliers
+    )
 
 
 FIGURES: Final = (

@@ -15,7 +15,7 @@ from linepose.arrays import Floats
 from linepose.estimation.diagnostics import MINIMUM_STEPS_PER_TIME
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.output.figures.corner_plot import LABELS
-from linepose.output.figures.entry import FigureEntry
+from linepose.output.figures.entry import FigureEntry, without_removal
 from linepose.output.figures.style import (
     BLACK,
     BLUE,
@@ -36,6 +36,7 @@ from linepose.pipeline.table_checks import stage_rows, usable_rows
 
 _COLOURS = (BLUE, RED, GREEN, SKY, ORANGE, PURPLE)
 _SHOWN_WALKERS = 5
+_NO_CHAIN: Final = "The samples of an adjustment are independent draws: there is no chain to look at."
 _LINES: Final[Any] = {
     "optimum": {"color": BLACK, "linewidth": 0.8, "linestyle": "--"},
     "truth": {"color": POSE_MARKS["truth"][0], "linewidth": 0.8},
@@ -148,6 +149,7 @@ FIGURES: Final = (
         ),
         _trace,
         lambda r: trace_caption(r.results.table("diagnostics", DIAGNOSTICS)),
+        without_removal(_NO_CHAIN),
     ),
     FigureEntry(
         "autocorrelation",
@@ -159,5 +161,6 @@ FIGURES: Final = (
         ),
         lambda r: autocorrelation(r.samples),
         _diagnostics_caption,
+        without_removal(_NO_CHAIN),
     ),
 )

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from linepose.experiments.uncertainty import UNCERTAINTY
 from linepose.geometry.pose import SIGMA_COLUMNS
-from linepose.output.figures.entry import FigureEntry
+from linepose.output.figures.entry import FigureEntry, without_removal
 from linepose.output.figures.style import BLACK, BLUE, GREEN, HALF_PAGE_IN, RED, blank_figure, styled
 from linepose.pipeline.table_checks import stage_rows, usable_rows
 
@@ -79,5 +79,6 @@ FIGURES: Final = (
         ("uncertainty",),
         lambda r: uncertainty(r.results.table("uncertainty", UNCERTAINTY)),
         lambda r: uncertainty_caption(r.results.table("uncertainty", UNCERTAINTY)),
+        without_removal("The adjustment removes no observation: its sigmas are those of all of them."),
     ),
 )

@@ -5,7 +5,7 @@ from typing import Any
 
 from linepose.output.figures.entry import FIGURES
 from linepose.output.report.page import PlatformOnPage, figures_on_page
-from linepose.output.report.platform_sections import platform_sections
+from linepose.output.report.platform_sections import leading_sections, platform_sections
 from linepose.output.report.provenance import settings_text
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.summary import summarise
@@ -16,4 +16,10 @@ def platform_on_page(calibration: Calibration, settings: Mapping[str, Any]) -> P
     """Summary, sections and drawn figures of a platform, with the settings of its file."""
     index = calibration.results.path("figures/index")
     figures = figures_on_page(calibration.name, index.parent, read_table(index, FIGURES))
-    return PlatformOnPage(summarise(calibration), platform_sections(calibration), figures, settings_text(settings))
+    return PlatformOnPage(
+        summarise(calibration),
+        leading_sections(calibration),
+        platform_sections(calibration),
+        figures,
+        settings_text(settings),
+    )

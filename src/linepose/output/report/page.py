@@ -32,9 +32,10 @@ class FigureOnPage:
 
 @dataclass(frozen=True)
 class PlatformOnPage:
-    """One platform: its summary, the sections that stand between pose and figures, its figures and its settings."""
+    """One platform: its summary, the sections before its pose and after it, its figures and its settings."""
 
     summary: PlatformSummary
+    leading: Sequence[SectionOnPage]
     sections: Sequence[SectionOnPage]
     figures: Sequence[FigureOnPage]
     settings: str

@@ -28,12 +28,17 @@ class TableOnPage:
 
 @dataclass(frozen=True)
 class SectionOnPage:
-    """A section with a heading: what it says in a paragraph, and its tables."""
+    """A section with a heading: what it says, a blank line between paragraphs, and its tables."""
 
     anchor: str
     title: str
     text: str
     tables: Sequence[TableOnPage]
+
+    @property
+    def paragraphs(self) -> list[str]:
+        """What it says, paragraph by paragraph."""
+        return [paragraph for paragraph in self.text.split("\n\n") if paragraph]
 
 
 def plain_table(name: str, title: str, table: pd.DataFrame) -> TableOnPage:

@@ -1,0 +1,96 @@
+"""The section on the adjustment: what the errors were, which reported sigmas look wrong, and whether halves agree."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from linepose.arrays import Floats
+from linepose.experiments.adjusted import ADJUSTMENT
+from linepose.output.adjusted import Halves, halves, has_adjustment, is_adjusted, levels_by_set, set_in_words
+from linepose.output.report.adjustment_on_page import halves_table, level_table, pose_table, sigma_table, view_table
+from linepose.output.report.adjustment_words import FAULT_WORDS, boresight_sentence, levels_sentence, sigmas_sentence
+from linepose.output.report.sections import SectionOnPage
+from linepose.pipeline.adjusted_tables import MEASUREMENTS, VIEWS
+from linepose.pipeline.calibration import INLIERS, Calibration
+from linepose.pipeline.stages import DIAGNOSTICS
+from linepose.pipeline.table_checks import stage_rows
+from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES
+
+_ATTITUDE_VARIANCES: Final = [COVARIANCE_COLUMNS[COVARIANCE_INDICES.index((i, i))] for i in (3, 4, 5)]
+
+
+def adjustment_section(calibration: Calibration) -> SectionOnPage | None:
+    """The section; None where a platform has no adjustment."""
+    if not has_adjustment(calibration.platform_file):
+        return None
+    own = is_adjusted(calibration.platform_file)
+    levels, found = levels_by_set(calibration), halves(calibration)
+    views = calibration.results.table("adjusted_views", VIEWS)
+    first = next(iter(levels.values()))
+    paragraphs = [
+        halves_sentence(found),
+        levels_sentence(first),
+        sigmas_sentence(levels),
+        boresight_sentence(first, _duration_s(calibration), _reported_rad(calibration)),
+        views_sentence(views),
+        *_warnings(calibration),
+    ]
+    anchor = f"{calibration.name}-adjustment"
+    tables = [] if own else [pose_table(f"{anchor}-poses", calibration)]
+    tables += [level_table(f"{anchor}-levels", levels), sigma_table(f"{anchor}-sigmas", levels)]
+    tables += [halves_table(f"{anchor}-halves", found)] if found else []
+    tables.append(view_table(f"{anchor}-views", views))
+    title = "What the errors were" if own else "The adjustment"
+    return SectionOnPage(anchor, title, "\n\n".join(filter(None, paragraphs)), tables)
+
+
+def halves_sentence(found: Sequence[Halves]) -> str:
+    """The headline: how many times as far apart as stated random halves lie, of each model and set."""
+    if not found:
+        return ""
+    first, *others = found
+    sentence = f"Random halves lie {first.factor:.2f} times as far apart as stated"
+    if not others:
+        return f"{sentence}."
+    rest = ", ".join(f"{one.factor:.2f} times ({_of_halves(one)})" for one in others)
+    return f"{sentence} ({_of_halves(first)}), {rest}."
+
+
+def _of_halves(one: Halves) -> str:
+    return f"{one.noise_model}, {set_in_words(one.set)}"
+
+
+def views_sentence(views: pd.DataFrame) -> str:
+    """Which observations are far off, and what their errors look like; `views` as in `VIEWS`."""
+    doubtful = views[views["fault"] != ""].sort_values("weight")
+    if doubtful.empty:
+        return "No observation is far off, and none was removed."
+    named = "; ".join(
+        f"{row['observation']}, weight {row['weight']:.2g}, {FAULT_WORDS[row['fault']]}"
+        for _, row in doubtful.iterrows()
+    )
+    return f"Far off, but not removed: observation {named}."
+
+
+def _duration_s(calibration: Calibration) -> float:
+    time_us = calibration.results.table("adjusted_measurements", MEASUREMENTS)["time_us"].to_numpy()
+    return float(1e-6 * np.ptp(time_us))
+
+
+def _reported_rad(calibration: Calibration) -> Floats:
+    """Typical reported sigmas of roll, pitch and yaw (3,)."""
+    return np.sqrt(calibration.observations[_ATTITUDE_VARIANCES].to_numpy().mean(axis=0))
+
+
+def _warnings(calibration: Calibration) -> list[str]:
+    """What the adjustment warns of, a sentence a set of observations."""
+    results = calibration.results
+    if is_adjusted(calibration.platform_file):
+        rows = stage_rows(results.table("diagnostics", DIAGNOSTICS), INLIERS, [], "diagnostics.parquet")
+        told = {"": str(rows["warning"].iloc[0])}
+    else:
+        table = results.table("adjustment", ADJUSTMENT)
+        told = {f" ({set_in_words(row['set'])})": str(row["warning"]) for _, row in table.iterrows()}
+    return [f"Warning{place}: {warning}." for place, warning in told.items() if warning]

@@ -1,0 +1,118 @@
+"""The tables of the section on the adjustment."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+
+from linepose.experiments.adjusted import ALL
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.output.adjusted import Halves, estimates, set_in_words
+from linepose.output.report.adjustment_words import (
+    FAULT_WORDS,
+    LEVEL_WORDS,
+    attitude_fits,
+    level_values,
+    navigation_error,
+)
+from linepose.output.report.sections import TableOnPage
+from linepose.pipeline.adjusted_tables import CORRECTION_COLUMNS
+from linepose.pipeline.calibration import INLIERS, Calibration
+from linepose.pipeline.evidence import pose_numbers
+
+_CORRECTION_HEADS = ("North (mm)", "East (mm)", "Down (mm)", "Roll (°)", "Pitch (°)", "Yaw (°)")
+
+
+def pose_table(anchor: str, calibration: Calibration) -> TableOnPage:
+    """The pose under the adjustment and under the platform's own noise model, beside the hand measurement."""
+    table, numbers = estimates(calibration), pose_numbers(calibration)
+    own = (table["noise_model"] == calibration.noise_model) & (table["set"] == INLIERS)
+    beside = (table["noise_model"] != calibration.noise_model) & table["set"].isin([ALL, INLIERS])
+    chosen = [row for _, row in pd.concat([table[beside], table[own]]).iterrows()]
+    heads = ["Number", *(_counted(row) for row in chosen), "By hand"]
+    rows = [
+        [
+            f"{number.name} ({number.unit})",
+            *(f"{row[POSE_COLUMNS[k]]:.4f} ± {row[SIGMA_COLUMNS[k]]:.4f}" for row in chosen),
+            f"{number.hand:.4f} ± {number.hand_sigma:.4f}",
+        ]
+        for k, number in enumerate(numbers)
+    ]
+    if calibration.true_pose is not None:
+        heads.append("Truth")
+        rows = [[*row, f"{truth:.4f}"] for row, truth in zip(rows, calibration.true_pose, strict=True)]
+    sentence = (
+        "First the pose under the adjustment, which needs no observation removed, then the same of the accepted ones "
+        f"alone, then that of the {calibration.noise_model} noise model; each with one sigma."
+    )
+    return TableOnPage(anchor, "Pose by noise model", sentence, heads, rows, folded=False)
+
+
+def _counted(row: "pd.Series") -> str:
+    which = "all" if row["set"] == ALL else "accepted"
+    return f"{str(row['noise_model']).capitalize()}, {row['n_observations']} {which}"
+
+
+def level_table(anchor: str, levels: Mapping[str, pd.DataFrame]) -> TableOnPage:
+    """Each level with its 95 % interval, a column a set of observations, and what was known before the data."""
+    first = next(iter(levels.values())).set_index("level")
+    values = [level_values(table) for table in levels.values()]
+    rows = [
+        [
+            words,
+            *(_interval(*one.loc[level]) for one in values),
+            _interval(*first.loc[level, ["prior_median", "prior_low", "prior_high"]]),
+        ]
+        for level, words in LEVEL_WORDS.items()
+    ]
+    heads = ["Level", *(set_in_words(name).capitalize() for name in levels), "Before the data"]
+    return TableOnPage(anchor, "Levels", "Each with its 95 % interval.", heads, rows, folded=False)
+
+
+def sigma_table(anchor: str, levels: Mapping[str, pd.DataFrame]) -> TableOnPage:
+    """How large errors were beside the reported sigmas, position and attitude, a row a set of observations."""
+    rows = []
+    for name, table in levels.items():
+        factor, whole = level_values(table).loc["attitude"], navigation_error(table)
+        verdict = {True: "fit", False: "look wrong", None: "not known"}[attitude_fits(table)]
+        cells = [f"{whole:.2f}", f"{whole * factor['value']:.2f}", _interval(*factor)]
+        rows.append([set_in_words(name), *cells, verdict])
+    heads = ["Observations", "Position error / reported", "Attitude error / reported", "Attitude over position"]
+    heads.append("Attitude sigmas")
+    return TableOnPage(anchor, "Reported sigmas", "", heads, rows, folded=False)
+
+
+def halves_table(anchor: str, found: Sequence[Halves]) -> TableOnPage:
+    """How far apart random halves lie, a row a model and a set of observations."""
+    rows = [
+        [
+            one.noise_model,
+            set_in_words(one.set),
+            f"{len(one.distance)}",
+            f"{np.median(one.distance):.2f}",
+            f"{one.factor:.2f}",
+        ]
+        for one in found
+    ]
+    heads = ["Noise model", "Observations", "Splits", "Median distance (sigmas)", "Times as far apart as stated"]
+    return TableOnPage(anchor, "Random halves", f"{len(rows)} comparisons", heads, rows)
+
+
+def view_table(anchor: str, views: pd.DataFrame) -> TableOnPage:
+    """Each observation's weight, what its errors look like if it is far off, and its mean correction."""
+    scale = np.array([1e3] * 3 + [float(np.degrees(1.0))] * 3)
+    rows = []
+    for _, row in views.iterrows():
+        mean = scale * row[list(CORRECTION_COLUMNS)].to_numpy(dtype=float)
+        cells = [f"{value + 0.0:.{1 if k < 3 else 3}f}" if np.isfinite(value) else "" for k, value in enumerate(mean)]
+        weight = f"{row['weight']:.2f}" if np.isfinite(row["weight"]) else ""
+        rows.append([str(row["observation"]), weight, FAULT_WORDS.get(row["fault"], ""), *cells])
+    heads = ["Observation", "Weight", "Errors look", *_CORRECTION_HEADS]
+    sentence = f"weight and mean correction of {len(rows)} observations"
+    return TableOnPage(anchor, "Observations", sentence, heads, rows)
+
+
+def _interval(value: float, low: float, high: float) -> str:
+    if not np.isfinite([low, high]).all():
+        return f"{value:.2g}"
+    return f"{value:.2g} ({low:.2g} to {high:.2g})"
