@@ -19,6 +19,7 @@ from linepose.pipeline.residual_tables import ESTIMATED_POINTS, POINT_COVARIANCE
 from linepose.pipeline.stages import DIAGNOSTICS, LAPLACE_SIGMA_COLUMNS, OPTIMA, POSE, SAMPLES
 from linepose.survey.observations import COVARIANCE_COLUMNS, EULER_COLUMNS, OBSERVATIONS, POSITION_COLUMNS
 from linepose.tables import write_table
+from unit import made_up_adjustment
 
 OPTIMUM = np.array([0.19, -0.14, -0.79, -0.82, 0.74, -1.43])
 SIGMA = np.array([0.03, 0.05, 0.06, 0.016, 0.018, 0.009])
@@ -33,6 +34,7 @@ PLATFORM = {
     "camera": {"focal_length_m": 8.2e-3, "pixel_pitch_m": 7.4e-6, "n_pixels": 648, "principal_point_px": 323.0},
     "hand_measured": {"position_m": [0.2, 0.0, -0.8], "euler_deg": [-56.0, 0.0, -90.0]},
     "source": {"kind": "labelled_views", "dataset": "made_up"},
+    "experiments": {"adjustment": {"platforms": ["other"]}},
     "outline": {
         "side": {"lines": [[[-1.0, 0.5], [1.0, 0.5], [0.0, -0.7], [-1.0, 0.5]]], "circles": [[0.5, 0.7, 0.2]]},
         "front": {"lines": [[[-0.7, 0.5], [0.7, 0.5]]]},
@@ -146,6 +148,7 @@ def diagnostics() -> pd.DataFrame:
             "neg_log_likelihood": 12.5,
             "reduced_chi_square": 0.9,
             "warning": "short",
+            **dict.fromkeys(("pareto_shape", "least_eigenvalue", "disagreement_sigmas"), np.nan),
         }
         for k, name in enumerate(POSE_COLUMNS)
     ]
@@ -253,10 +256,9 @@ def uncertainty() -> pd.DataFrame:
 def identifiability() -> pd.DataFrame:
     """The height is what the data say least of."""
     names = (*POSE_COLUMNS[:3], "roll_rad", "pitch_rad", "yaw_rad")
-    direction = np.array([0.3, 0.0, -0.95, 0.0, 0.0, 0.0])
-    table = pd.DataFrame({"parameter": names, "prior_sigma": 1.0, "posterior_sigma": np.linspace(0.1, 0.9, 6)})
-    table = table.assign(shrinkage=1 - table["posterior_sigma"] ** 2, weakest_direction=direction)
-    return table.assign(weakest_shrinkage=0.1, weakest_in_words="r_z against r_x")
+    table = pd.DataFrame({"parameter": names, "prior_sigma": 1.0, "posterior_sigma": np.linspace(0.1, 0.6, 6)})
+    table = table.assign(weakest_direction=[0.3, 0.0, -0.95, 0.0, 0.0, 0.0], weakest_shrinkage=0.1)
+    return table.assign(shrinkage=1 - table["posterior_sigma"] ** 2, weakest_in_words="r_z against r_x")
 
 
 def prior() -> pd.DataFrame:
@@ -303,10 +305,35 @@ TABLES = {
     "leave_one_out": (leave_one_out, LEAVE_ONE_OUT),
     "uncertainty": (uncertainty, UNCERTAINTY),
     "identifiability": (identifiability, IDENTIFIABILITY),
+    **made_up_adjustment.BESIDE,
 }
+ADJUSTED = {
+    name: TABLES[name]
+    for name in ("prior", "identifiability", "observations", "mcmc/inliers", "residuals", "estimated_points", "splits")
+} | {name: TABLES[name] for name in ("mapping", "mapping_summary", "leave_one_out")}
 
 
 def write_results(folder: Path) -> None:
     """Write every table of the made-up platform into a folder."""
     for name, (make, schema) in TABLES.items():
+        write_table(make(), folder / f"{name}.parquet", schema)
+
+
+def adjusted_platform() -> Platform:
+    """The made-up platform with the adjustment for its noise model."""
+    return platform(noise_model="adjustment", prior="hand_measured", experiments={"basin": None})
+
+
+def write_adjusted_results(folder: Path) -> None:
+    """Write every table of the made-up platform under the adjustment: one stage, all observations in it."""
+    for name, (make, schema) in ADJUSTED.items():
+        write_table(make(), folder / f"{name}.parquet", schema)
+    told = {"pareto_shape": 0.3, "least_eigenvalue": 0.9, "disagreement_sigmas": 0.5, "warning": "few draws"}
+    whole = outliers().query("n_observations == 6").assign(accepted=True, removed=False)
+    write_table(whole, folder / "outliers.parquet", OUTLIERS)
+    write_table(optima().query("stage == 'inliers'"), folder / "optima.parquet", OPTIMA)
+    write_table(pose().query("stage in ('hand_measured', 'inliers')"), folder / "pose.parquet", POSE)
+    write_table(diagnostics().assign(**told), folder / "diagnostics.parquet", DIAGNOSTICS)
+    for name in ("levels", "adjusted_views", "adjusted_measurements"):
+        make, schema = made_up_adjustment.BESIDE[name]
         write_table(make(), folder / f"{name}.parquet", schema)

@@ -79,8 +79,8 @@ def boresight_sentence(table: pd.DataFrame, duration_s: float, reported_rad: Flo
         f"The drift lasts {seconds(value['correlation_time_s'])}, the survey {seconds(duration_s)}: "
         f"{100 * share:.0f} % of the drift's variance is common to the whole survey, and no data of one survey can "
         f"tell an attitude error common to it from the camera's boresight. The angles found have it in them, {names} "
-        "(one sigma): they are right for this survey, and another day's will differ by as much. Average over surveys of "
-        "several days."
+        "(one sigma): they are right for this survey, and another day's will differ by as much. Average over surveys "
+        "of several days."
     )
 
 
