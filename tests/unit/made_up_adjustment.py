@@ -6,7 +6,7 @@ import pandas as pd
 from linepose.adjustment.levels import LEVEL_NAMES, LOG_SIGMA, MEDIAN
 from linepose.experiments.adjusted import ADJUSTED_SPLITS, ADJUSTMENT
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.pipeline.adjusted_tables import CORRECTION_COLUMNS, LEVELS, MEASUREMENTS, VIEWS
+from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, LEVELS, MEASUREMENTS, VIEWS
 
 VALUES = dict(zip(LEVEL_NAMES, (0.8, 0.01, 0.6, 0.23, 0.62, 13.0, 0.4), strict=True))  # drift and constant make 1.0
 POSE = np.array([0.17, 0.03, -0.70, -0.82, 0.74, -1.43])

@@ -6,11 +6,10 @@ import numpy as np
 
 from linepose.adjustment.reprojection import Reprojection
 from linepose.adjustment.result import Adjustment
-from linepose.adjustment.thresholds import CLOCK, JUMP, LABEL
+from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL
 from linepose.arrays import Floats
 from linepose.survey.observations import Survey
 
-DOUBTFUL_WEIGHT: Final = 0.5  # of a view or a measurement: its errors are 1.4 times what the levels say
 _MOSTLY: Final = 0.8  # share of the squared errors that a cause explains
 _FEWEST: Final = 3  # measurements of a view that tell causes apart
 

@@ -9,3 +9,4 @@ DISAGREEMENT_SIGMAS: Final = 3.0  # of data and hand measurement
 CLOCK: Final = "clock"
 LABEL: Final = "label"
 JUMP: Final = "jump"
+DOUBTFUL_WEIGHT: Final = 0.5  # of a view or a measurement: its errors are 1.4 times what the levels say

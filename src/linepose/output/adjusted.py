@@ -17,7 +17,7 @@ from linepose.experiments.adjusted import ADJUSTED_SPLITS, ADJUSTMENT, ALL, INLI
 from linepose.experiments.repeatability import SECTION as REPEATABILITY_SECTION
 from linepose.experiments.splits import SPLITS, known_distances, sigma_factor
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.pipeline.adjusted_tables import LEVELS
+from linepose.pipeline.adjusted_schemas import LEVELS
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.stages import POSE
 from linepose.pipeline.table_checks import stage_rows

@@ -12,7 +12,7 @@ from linepose.arrays import Floats
 from linepose.output.adjusted import without_adjustment
 from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, GREY, ORANGE, WIDE_IN, blank_figure, styled
-from linepose.pipeline.adjusted_tables import CORRECTION_COLUMNS, MEASUREMENTS
+from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, MEASUREMENTS
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.table_checks import usable_rows
 from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, OBSERVATIONS

@@ -12,7 +12,7 @@ from linepose.errors import InputError
 from linepose.output.adjusted import without_adjustment
 from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, GREY, WIDE_IN, blank_figure, styled
-from linepose.pipeline.adjusted_tables import MEASUREMENTS, NORMALISED_COLUMNS
+from linepose.pipeline.adjusted_schemas import MEASUREMENTS, NORMALISED_COLUMNS
 from linepose.pipeline.table_checks import usable_rows
 
 _TITLES: Final = ("along the scan line", "across it")

@@ -7,11 +7,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from linepose.adjustment.faults import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL
+from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL
 from linepose.output.adjusted import without_adjustment
 from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, ORANGE, PURPLE, RED, WIDE_IN, blank_figure, styled
-from linepose.pipeline.adjusted_tables import MEASUREMENTS, VIEWS
+from linepose.pipeline.adjusted_schemas import MEASUREMENTS, VIEWS
 from linepose.pipeline.table_checks import usable_rows
 
 FAULTS: Final = {

@@ -12,7 +12,7 @@ from linepose.output.adjusted import Halves, halves, has_adjustment, is_adjusted
 from linepose.output.report.adjustment_on_page import halves_table, level_table, pose_table, sigma_table, view_table
 from linepose.output.report.adjustment_words import FAULT_WORDS, boresight_sentence, levels_sentence, sigmas_sentence
 from linepose.output.report.sections import SectionOnPage
-from linepose.pipeline.adjusted_tables import MEASUREMENTS, VIEWS
+from linepose.pipeline.adjusted_schemas import MEASUREMENTS, VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.stages import DIAGNOSTICS
 from linepose.pipeline.table_checks import stage_rows

@@ -16,7 +16,7 @@ from linepose.output.report.adjustment_words import (
     navigation_error,
 )
 from linepose.output.report.sections import TableOnPage
-from linepose.pipeline.adjusted_tables import CORRECTION_COLUMNS
+from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.evidence import pose_numbers
 

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from linepose.adjustment.faults import CLOCK, JUMP, LABEL
+from linepose.adjustment.thresholds import CLOCK, JUMP, LABEL
 from linepose.arrays import Floats
 from linepose.experiments.adjusted import INLIERS
 from linepose.output.adjusted import common_share, set_in_words

@@ -1,4 +1,4 @@
-"""The figures of the adjustment, drawn from made-up results, and their captions, which must tell other numbers apart."""
+"""The figures of the adjustment, drawn from made-up results, and their captions, which tell other numbers apart."""
 
 import numpy as np
 import pandas as pd

@@ -74,8 +74,8 @@ def test_a_boresight_has_the_survey_s_own_attitude_error_in_it_where_drift_outla
 
 def test_observations_that_are_far_off_are_named_with_what_their_errors_look_like():
     assert views_sentence(adjusted_views()) == (
-        "Far off, but not removed: observation 6, weight 0.1, as if its clock were off; 5, weight 0.8, as if points were "
-        "mislabelled."
+        "Far off, but not removed: observation 6, weight 0.1, as if its clock were off; 5, weight 0.8, as if "
+        "points were mislabelled."
     )
     assert "No observation is far off" in views_sentence(adjusted_views().assign(fault=""))
 
