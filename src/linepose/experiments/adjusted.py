@@ -52,7 +52,7 @@ class AdjustedSettings(Settings):
         description="Platform files of the same camera with other data choices (covariance columns, views), which are "
         "adjusted too; they are run as far as the outlier removal.",
     )
-    n_splits: NonNegativeInt = Field(60, description="Random halves of each set of observations.")
+    n_splits: NonNegativeInt = Field(30, description="Random halves of each set of observations.")
     batch_size: PositiveInt = Field(10, description="Splits between two savings; no result depends on it.")
 
 
