@@ -78,7 +78,7 @@ def test_one_core_makes_the_same_bytes_as_two(finished, tmp_path):
             TINY | {"simulation": TINY["simulation"] | {"seeds": 1}},
             "tiny.yaml: simulation.seeds: found an unknown key",
         ),
-        (STUDY | {"platforms": ["tiny", "tinny"]}, TINY, "tinny.yaml: found no such file"),
+        (STUDY | {"platforms": ["tiny", "tinny"]}, TINY, "tinny.yaml: found no such platform"),
         (STUDY, TINY | {"source": {"kind": "scans", "dataset": "gone"}, "simulation": None}, "found no folder gone"),
     ],
 )

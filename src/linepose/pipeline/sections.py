@@ -27,6 +27,8 @@ def present_section(project: Project, platform: str, name: str, recorded: Any, e
 
     A group of sections has those that are recorded. `experiments` are the sections of the platform's experiments.
     """
+    if name == "sections":  # of experiments, whose keys may be those of config.yaml too
+        return {key: plain_settings({key: experiments[key]})[key] for key in recorded}
     if name in GROUPS:
         return {key: present_section(project, platform, key, value, experiments) for key, value in recorded.items()}
     if name == PLATFORM:
@@ -34,10 +36,10 @@ def present_section(project: Project, platform: str, name: str, recorded: Any, e
         found: Any = {key: value for key, value in whole.items() if key in recorded or key not in _OF_NO_EFFECT}
     elif name == OTHERS:
         found = {other: platform_section(project, other) for other in recorded if other in project.platforms}
-    elif name in experiments:
-        found = experiments[name]
     elif name in type(project.study).model_fields:
         found = study_section(project, name)
+    elif name in experiments:
+        found = experiments[name]
     else:
         found = platform_section(project, platform)[name]
     return plain_settings({name: found})[name]
