@@ -76,8 +76,15 @@ class Cell:
         return survey, truth, drawn_hand_measurement(truth, random) if self.hand_measured_prior else self.start_pose
 
     def compile(self) -> None:
-        """Estimate one survey, so that processes that fork from this one need not compile what it takes."""
-        self.row(0)
+        """Estimate one survey, or evaluate its likelihood on one core, so that processes that fork need not compile it.
+
+        What runs on several threads must not have run before a fork.
+        """
+        make_likelihood = noise_model(self.noise_model).likelihood
+        if make_likelihood is None:
+            self.row(0)
+        else:
+            make_likelihood(self.survey(0)[0], self.camera).log_likelihood(self.start_pose)
 
     def row(self, index: int) -> dict[str, Any]:
         """One row: a survey's estimate beside the truth.

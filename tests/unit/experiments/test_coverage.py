@@ -1,5 +1,7 @@
 """The coverage study's surveys and rows, and a small cell of it as a regression of what the adjustment states."""
 
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -76,6 +78,29 @@ def test_rows_depend_on_the_survey_alone_and_fit_the_schema(platform, tmp_path):
     np.testing.assert_array_equal(both.iloc[1].drop("reason"), second.iloc[0].drop("reason"))
     write_table(both, tmp_path / "rows.parquet", COVERAGE_SURVEYS)
     assert read_table(tmp_path / "rows.parquet", COVERAGE_SURVEYS)["survey"].tolist() == [0, 1]
+
+
+FORKED = """
+import sys
+from pathlib import Path
+from linepose.config.platform import load_platform
+from linepose.experiments.coverage import COVERAGE_SURVEYS, Cell
+from linepose.pipeline.batches import run_batches
+from linepose.simulation.noise_levels import NoiseLevels
+
+platform = load_platform(Path(sys.argv[1]), "ladybird-sim")
+camera, simulation = platform.intrinsics(), platform.simulation
+cell = Cell("p", "white", "published", camera, simulation, platform.start_pose(), NoiseLevels(white_level=1.0), 7)
+cell.compile()
+table = run_batches(lambda name: cell.rows([int(name)]), ["0", "1"], Path(sys.argv[2]), COVERAGE_SURVEYS, 2)
+print(*table["survey"])
+"""
+
+
+def test_processes_may_fork_from_one_that_has_compiled(platforms_folder, tmp_path):
+    command = [sys.executable, "-c", FORKED, str(platforms_folder), str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    assert done.stdout.split() == ["0", "1"], done.stderr[-500:]
 
 
 def test_estimates_that_fail_hold_nothing_and_say_why(platform, monkeypatch):
