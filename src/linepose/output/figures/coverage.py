@@ -17,6 +17,7 @@ from linepose.pipeline.table_checks import usable_rows
 
 _PANELS_A_ROW: Final = 4
 _TITLE_LETTERS: Final = 15
+_MOST_TICKS: Final = 5  # that fit side by side on an axis
 _ROW_IN: Final = 0.17
 _PLATFORM_LINES: Final = ("-", "--", ":", "-.")
 _PLATFORM_MARKERS: Final = ("o", "D", "s", "^")
@@ -98,7 +99,7 @@ def errors(summary: pd.DataFrame) -> Figure:
     figure = blank_figure(WIDE_IN, 0.9 + _ROW_IN * len(regimes))
     panels = figure.subplots(1, 2, sharey=True)
     for panel, column, scale, label, ticks in (
-        (panels[0], "rmse_position_m", 1.0, "Position error (m)", (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5)),
+        (panels[0], "rmse_position_m", 1.0, "Position error (m)", (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 100)),
         (panels[1], "rmse_turn_rad", float(np.degrees(1.0)), "Rotation error (°)", (0.2, 0.5, 1, 2, 5, 10, 20, 50)),
     ):
         for _, row in rows.iterrows():
@@ -108,6 +109,8 @@ def errors(summary: pd.DataFrame) -> Figure:
         panel.set_xscale("log")
         low, high = panel.get_xlim()
         shown = [tick for tick in ticks if low <= tick <= high]
+        if len(shown) > _MOST_TICKS:
+            shown = [tick for tick in shown if f"{tick:e}".startswith("1")]
         panel.set_xticks(shown, [f"{tick:g}" for tick in shown])
         panel.set_xticks([], minor=True)
         panel.set_xlabel(label)
