@@ -34,7 +34,7 @@ PLATFORM = {
     "camera": {"focal_length_m": 8.2e-3, "pixel_pitch_m": 7.4e-6, "n_pixels": 648, "principal_point_px": 323.0},
     "hand_measured": {"position_m": [0.2, 0.0, -0.8], "euler_deg": [-56.0, 0.0, -90.0]},
     "source": {"kind": "labelled_views", "dataset": "made_up"},
-    "experiments": {"adjustment": {"platforms": ["other"]}},
+    "experiments": {"adjustment_beside": {"platforms": ["other"]}},
     "outline": {
         "side": {"lines": [[[-1.0, 0.5], [1.0, 0.5], [0.0, -0.7], [-1.0, 0.5]]], "circles": [[0.5, 0.7, 0.2]]},
         "front": {"lines": [[[-0.7, 0.5], [0.7, 0.5]]]},

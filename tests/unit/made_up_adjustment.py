@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from linepose.adjustment.levels import LEVEL_NAMES, LOG_SIGMA, MEDIAN
-from linepose.experiments.adjusted import ADJUSTED_SPLITS, ADJUSTMENT
+from linepose.experiments.adjustment_beside import ADJUSTED_SPLITS, ADJUSTMENT
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, LEVELS, MEASUREMENTS, VIEWS
 

@@ -31,7 +31,7 @@ TINY = {
         "basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]},
         "repeatability": None,
         "sensitivity": None,
-        "adjustment": {"n_splits": 2},
+        "adjustment_beside": {"n_splits": 2},
     },
     "simulation": {
         "passes": PASSES,

@@ -4,24 +4,23 @@ from typing import Final
 
 import numpy as np
 
-from linepose.adjustment.reprojection import Reprojection
 from linepose.adjustment.result import Adjustment
 from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL
 from linepose.arrays import Floats
-from linepose.survey.observations import Survey
+from linepose.likelihood.base import Residuals
 
 _MOSTLY: Final = 0.8  # share of the squared errors that a cause explains
 _FEWEST: Final = 3  # measurements of a view that tell causes apart
 
 
-def view_faults(survey: Survey, found: Adjustment, errors: Reprojection) -> list[str]:
+def view_faults(found: Adjustment, errors: Residuals) -> list[str]:
     """One word a view (N,): `clock`, `label` or `jump`, empty for a view that is as good as the rest.
 
     Some measurements far off while the others are good: labels. Errors that one time shift explains: a clock. Otherwise
     the body's pose jumped or drifted within the view.
     """
     words = []
-    for view in range(survey.n_observations):
+    for view in range(len(found.view_weight)):
         single = found.measurement_weight[view]
         weight = np.nanmin([found.view_weight[view], _or_one(single)])
         words.append(_word(errors, single, view) if weight < DOUBTFUL_WEIGHT else "")
@@ -32,7 +31,7 @@ def _or_one(weights: Floats) -> float:
     return float(np.nanmin(weights)) if np.isfinite(weights).any() else 1.0
 
 
-def _word(errors: Reprojection, single: Floats, view: int) -> str:
+def _word(errors: Residuals, single: Floats, view: int) -> str:
     seen = np.flatnonzero(np.isfinite(errors.error_px[view]))
     if len(seen) < _FEWEST:
         return JUMP

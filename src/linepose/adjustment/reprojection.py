@@ -1,7 +1,5 @@
 """Reprojection errors of an adjustment at the body poses as reported, with the sigmas that its levels say of them."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from linepose.adjustment.levels import Levels
@@ -12,22 +10,11 @@ from linepose.adjustment.result import Adjustment, gridded
 from linepose.arrays import Floats
 from linepose.geometry.camera import Camera
 from linepose.geometry.rotations import matrix_from_rotation_vector
+from linepose.likelihood.base import Residuals
 from linepose.survey.observations import Survey
 
 
-class Reprojection(NamedTuple):
-    """N observations of M points, NaN where there is none.
-
-    error_uv_px (N, M, 2): observed minus reprojected, along the line and across it; error_px (N, M): its length;
-    sigma_px (N, M): in the error's direction.
-    """
-
-    error_uv_px: Floats
-    error_px: Floats
-    sigma_px: Floats
-
-
-def reprojection(survey: Survey, camera: Camera, found: Adjustment, line_period_s: float | None = None) -> Reprojection:
+def reprojection(survey: Survey, camera: Camera, found: Adjustment, line_period_s: float | None = None) -> Residuals:
     """The errors at the adjusted camera and points and at the body poses as reported, of the survey that was adjusted.
 
     The sigma counts every part of the navigation's error, lateness and pixels at the estimated levels.
@@ -54,7 +41,13 @@ def reprojection(survey: Survey, camera: Camera, found: Adjustment, line_period_
     direction = np.where(length[:, None] > 0, error / np.where(length > 0, length, 1.0)[:, None], [1.0, 0.0])
     sigma = np.sqrt(np.einsum("li,lij,lj->l", direction, variance, direction))
     grid = measurements.row, measurements.column, survey.u_px.shape
-    return Reprojection(gridded(error, *grid), gridded(length, *grid), gridded(sigma, *grid))
+    return Residuals(
+        error_px=gridded(length, *grid),
+        sigma_px=gridded(sigma, *grid),
+        error_uv_px=gridded(error, *grid),
+        point_m=found.points_m,
+        point_covariance=found.point_covariance,
+    )
 
 
 def _variance(

@@ -9,4 +9,5 @@ DISAGREEMENT_SIGMAS: Final = 3.0  # of data and hand measurement
 CLOCK: Final = "clock"
 LABEL: Final = "label"
 JUMP: Final = "jump"
-DOUBTFUL_WEIGHT: Final = 0.5  # of a view or a measurement: its errors are 1.4 times what the levels say
+CAUSES: Final = {CLOCK: "its clock", LABEL: "labels", JUMP: "a jump of the navigation"}
+DOUBTFUL_WEIGHT: Final = 0.25  # of a view or a measurement: its errors are twice what the levels say

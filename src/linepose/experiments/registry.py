@@ -7,7 +7,7 @@ from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.estimation.noise_models import noise_model
 from linepose.experiments import (
-    adjusted,
+    adjustment_beside,
     basin,
     clock_offset,
     leave_one_out,
@@ -33,7 +33,7 @@ EXPERIMENTS: Final[tuple[Experiment, ...]] = (
     basin.EXPERIMENT,
     mapping.EXPERIMENT,
     sensitivity.EXPERIMENT,
-    adjusted.EXPERIMENT,
+    adjustment_beside.EXPERIMENT,
     clock_offset.EXPERIMENT,
     truth_error.EXPERIMENT,
 )

@@ -13,7 +13,7 @@ from linepose.arrays import Floats
 from linepose.config.platform import Platform
 from linepose.estimation.noise_models import ADJUSTMENT as ADJUSTMENT_MODEL
 from linepose.estimation.noise_models import noise_model
-from linepose.experiments.adjusted import ADJUSTED_SPLITS, ADJUSTMENT, ALL, INLIERS, SECTION
+from linepose.experiments.adjustment_beside import ADJUSTED_SPLITS, ADJUSTMENT, ALL, INLIERS, SECTION
 from linepose.experiments.repeatability import SECTION as REPEATABILITY_SECTION
 from linepose.experiments.splits import SPLITS, known_distances, sigma_factor
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
@@ -23,10 +23,14 @@ from linepose.pipeline.stages import POSE
 from linepose.pipeline.table_checks import stage_rows
 
 NOT_ASKED_FOR: Final = (
-    "The adjustment was not asked for: experiments.adjustment is null in the platform's file, and its noise model is "
-    "another."
+    "The adjustment was not asked for: experiments.adjustment_beside is null in the platform's file, and its noise "
+    "model is another."
 )
-NO_HALVES: Final = "No halves were asked for: neither repeatability nor adjustment has splits in the platform's file."
+CORRECTION_HEADS: Final = ("North (mm)", "East (mm)", "Down (mm)", "Roll (°)", "Pitch (°)", "Yaw (°)")
+CORRECTION_SCALE: Final = np.array([1e3] * 3 + [float(np.degrees(1.0))] * 3)  # from m and rad
+NO_HALVES: Final = (
+    "No halves were asked for: neither repeatability nor adjustment_beside has splits in the platform's file."
+)
 
 
 @dataclass(frozen=True)

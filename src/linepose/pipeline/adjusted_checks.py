@@ -3,17 +3,14 @@
 from typing import Final
 
 from linepose.adjustment.thresholds import (
-    CLOCK,
+    CAUSES,
     FEWEST_EFFECTIVE_DRAWS,
-    JUMP,
-    LABEL,
     TRUSTED_EIGENVALUE,
     TRUSTED_SHAPE,
 )
 from linepose.pipeline.checks import AdjustedEvidence, Check, Evidence, Level
 
 _MANY: Final = 3  # one view in so many may be far off
-_CAUSES: Final = {CLOCK: "its clock", LABEL: "labels", JUMP: "a jump of the navigation"}
 
 
 def doubtful_views(evidence: Evidence, adjusted: AdjustedEvidence) -> Check:
@@ -26,7 +23,7 @@ def doubtful_views(evidence: Evidence, adjusted: AdjustedEvidence) -> Check:
         )
     if not adjusted.doubtful:
         return Check("Weights", Level.GOOD, f"{found} None is far off.")
-    named = ", ".join(f"{one.observation} ({_CAUSES[one.fault]})" for one in adjusted.doubtful)
+    named = ", ".join(f"{one.observation} ({CAUSES[one.fault]})" for one in adjusted.doubtful)
     few = len(adjusted.doubtful) <= evidence.n_observations / _MANY
     return Check(
         "Weights",

@@ -5,16 +5,18 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
+from linepose.adjustment.faults import view_faults
 from linepose.adjustment.levels import LEVEL_NAMES
-from linepose.adjustment.reprojection import Reprojection, reprojection
+from linepose.adjustment.reprojection import reprojection
 from linepose.adjustment.result import Adjustment
 from linepose.adjustment.settings import AdjustmentSection
 from linepose.arrays import Floats
 from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.diagnostics import split_r_hat
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.likelihood.base import Residuals
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, NORMALISED_COLUMNS, STAGE
-from linepose.pipeline.residual_tables import point_rows
+from linepose.pipeline.residual_tables import point_rows, residual_rows
 from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS
 from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.observations import Survey
@@ -36,14 +38,14 @@ def adjusted_tables(estimator: AdjustmentEstimator, seed: int) -> dict[str, pd.D
         f"mcmc/{STAGE}": found.samples,
         "diagnostics": _diagnostics(survey, found),
         "pose": _poses(survey, found, hand),
-        "residuals": _residuals(survey, errors),
-        "estimated_points": point_rows(STAGE, found.points_m, found.point_covariance, survey.origin_m),
+        "residuals": residual_rows(STAGE, survey, errors),
+        "estimated_points": point_rows(STAGE, survey, errors),
         **error_tables(survey, found, errors, estimator.settings),
     }
 
 
 def error_tables(
-    survey: Survey, found: Adjustment, errors: Reprojection, settings: AdjustmentSection
+    survey: Survey, found: Adjustment, errors: Residuals, settings: AdjustmentSection
 ) -> dict[str, pd.DataFrame]:
     """What the errors were: levels, and each view's and each measurement's corrections and weight."""
     return {
@@ -69,13 +71,11 @@ def level_table(found: Adjustment, settings: AdjustmentSection) -> pd.DataFrame:
     )
 
 
-def view_table(survey: Survey, found: Adjustment, errors: Reprojection) -> pd.DataFrame:
+def view_table(survey: Survey, found: Adjustment, errors: Residuals) -> pd.DataFrame:
     """One row an observation: its weight, mean correction and, where it is far off, what its errors look like.
 
     Columns as in `VIEWS`.
     """
-    from linepose.adjustment.faults import view_faults
-
     seen = np.any(np.isfinite(found.corrections[..., 0]), axis=1)
     mean = np.full((survey.n_observations, 6), np.nan)
     mean[seen] = np.nanmean(found.corrections[seen], axis=1)
@@ -84,7 +84,7 @@ def view_table(survey: Survey, found: Adjustment, errors: Reprojection) -> pd.Da
             "observation": survey.number,
             "weight": found.view_weight,
             **dict(zip(CORRECTION_COLUMNS, mean.T, strict=True)),
-            "fault": view_faults(survey, found, errors),
+            "fault": view_faults(found, errors),
         }
     )
 
@@ -104,13 +104,12 @@ def measurement_table(survey: Survey, found: Adjustment) -> pd.DataFrame:
     )
 
 
-def _outliers(survey: Survey, found: Adjustment, errors: Reprojection) -> pd.DataFrame:
-    mean = np.array([np.nanmean(row) if np.isfinite(row).any() else 0.0 for row in errors.error_px])
+def _outliers(survey: Survey, found: Adjustment, errors: Residuals) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "n_observations": survey.n_observations,
             "observation": survey.number,
-            "error_px": mean,
+            "error_px": np.nan_to_num(errors.mean_error_px()),
             "removed": False,
             "accepted": True,
             **_objective(found),
@@ -187,19 +186,4 @@ def _poses(survey: Survey, found: Adjustment, hand: HandMeasured) -> pd.DataFram
             }
             for stage, pose, sigma, rest in rows
         ]
-    )
-
-
-def _residuals(survey: Survey, errors: Reprojection) -> pd.DataFrame:
-    row, point = np.nonzero(np.isfinite(errors.error_px))
-    return pd.DataFrame(
-        {
-            "stage": STAGE,
-            "observation": survey.number[row],
-            "point": point.astype(np.int64),
-            "error_px": errors.error_px[row, point],
-            "error_u_px": errors.error_uv_px[row, point, 0],
-            "error_v_px": errors.error_uv_px[row, point, 1],
-            "sigma_px": errors.sigma_px[row, point],
-        }
     )

@@ -8,9 +8,8 @@ import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
 
-from linepose.arrays import Floats
-from linepose.likelihood.base import Likelihood
-from linepose.survey.observations import POSITION_COLUMNS, POSITION_COVARIANCE_INDICES
+from linepose.likelihood.base import Likelihood, Residuals
+from linepose.survey.observations import POSITION_COLUMNS, POSITION_COVARIANCE_INDICES, Survey
 from linepose.tables import floats, optional_floats, texts, whole_numbers
 
 _AXES = ("north", "east", "down")
@@ -41,31 +40,31 @@ def residual_tables(
         selected = likelihood.select(list(numbers))
         survey = selected.survey
         found = selected.residuals(np.asarray(parameters[stage], dtype=float))
-        row, column = np.nonzero(np.isfinite(found.error_px))
-        residuals.append(
-            pd.DataFrame(
-                {
-                    "stage": stage,
-                    "observation": survey.number[row],
-                    "point": column.astype(np.int64),
-                    "error_px": found.error_px[row, column],
-                    "error_u_px": found.error_uv_px[row, column, 0],
-                    "error_v_px": found.error_uv_px[row, column, 1],
-                    "sigma_px": found.sigma_px[row, column],
-                }
-            )
-        )
-        points.append(point_rows(stage, found.point_m, found.point_covariance, survey.origin_m))
+        residuals.append(residual_rows(stage, survey, found))
+        points.append(point_rows(stage, survey, found))
     return pd.concat(residuals, ignore_index=True), pd.concat(points, ignore_index=True)
 
 
-def point_rows(stage: str, point_m: Floats, covariance_m2: Floats, origin_m: Floats) -> pd.DataFrame:
-    """One row an estimated point, in map coordinates; columns as in `ESTIMATED_POINTS`.
+def residual_rows(stage: str, survey: Survey, found: Residuals) -> pd.DataFrame:
+    """One row an observed point of a survey; columns as in `RESIDUALS`."""
+    row, column = np.nonzero(np.isfinite(found.error_px))
+    return pd.DataFrame(
+        {
+            "stage": stage,
+            "observation": survey.number[row],
+            "point": column.astype(np.int64),
+            "error_px": found.error_px[row, column],
+            "error_u_px": found.error_uv_px[row, column, 0],
+            "error_v_px": found.error_uv_px[row, column, 1],
+            "sigma_px": found.sigma_px[row, column],
+        }
+    )
 
-    point_m (M, 3): from the origin (3,), NaN for one without an estimate; covariance_m2 (M, 3, 3).
-    """
-    known = np.flatnonzero(np.all(np.isfinite(point_m), axis=1))
-    position, covariance = point_m[known] + origin_m, covariance_m2[known]
+
+def point_rows(stage: str, survey: Survey, found: Residuals) -> pd.DataFrame:
+    """One row an estimated point of a survey, in map coordinates; columns as in `ESTIMATED_POINTS`."""
+    known = np.flatnonzero(np.all(np.isfinite(found.point_m), axis=1))
+    position, covariance = found.point_m[known] + survey.origin_m, found.point_covariance[known]
     columns = {name: position[:, k] for k, name in enumerate(POSITION_COLUMNS)}
     columns |= {
         name: covariance[:, i, j]

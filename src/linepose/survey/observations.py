@@ -24,6 +24,7 @@ _AXES: Final = ("north", "east", "down", "roll", "pitch", "yaw")
 COVARIANCE_INDICES: Final = tuple((i, j) for i in range(6) for j in range(i, 6))
 POSITION_COVARIANCE_INDICES: Final = tuple((i, j) for i in range(3) for j in range(i, 3))
 COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}" for i, j in COVARIANCE_INDICES)
+VARIANCE_COLUMNS: Final = tuple(COVARIANCE_COLUMNS[COVARIANCE_INDICES.index((i, i))] for i in range(6))
 POINT_FIELDS: Final = [
     *whole_numbers("observation", "point", "time_us"),
     *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS),

@@ -87,7 +87,7 @@ def test_clock_offset_needs_a_log(scans, views):
 def test_every_experiment_but_three_runs_by_default_and_null_leaves_one_out(views):
     default = experiment_settings(views)
     assert not default.subsets
-    assert default.adjustment is None
+    assert default.adjustment_beside is None
     assert default.clock_offset is None
     assert default.basin
     assert default.repeatability.first is None
@@ -106,7 +106,7 @@ def test_error_against_the_truth_is_of_simulated_platforms(scans, views):
 
 
 def test_compared_platforms_are_those_that_sections_name(views):
-    asked = {"sensitivity": {"platforms": ["a", "b"]}, "adjustment": {"platforms": ["b", "c"]}}
+    asked = {"sensitivity": {"platforms": ["a", "b"]}, "adjustment_beside": {"platforms": ["b", "c"]}}
     assert compared_platforms(views.replaced(experiments=asked), FILE) == ["a", "b", "c"]
     assert compared_platforms(views, FILE) == []
 

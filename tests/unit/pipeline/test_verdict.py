@@ -2,7 +2,8 @@ from dataclasses import replace
 
 import pytest
 
-from linepose.estimation.noise_models import PUBLISHED
+from linepose.estimation.noise_models import ADJUSTMENT, PUBLISHED
+from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView
 from linepose.pipeline.verdict import Evidence, Level, judge
 
 FINE = Evidence(
@@ -105,3 +106,43 @@ def test_errors_in_common_do_no_harm_where_halves_agree():
     check = named(judge(replace(FINE, intraclass_correlation=0.9, sigma_factor=1.0)), "Independence within a view")
     assert check.level == Level.GOOD
     assert "90 %" in check.found
+
+
+ADJUSTED = replace(FINE, noise_model=ADJUSTMENT.name, adjusted=AdjustedEvidence(0.9, 80.0, 0.4, ()))
+
+
+def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
+    verdict = judge(ADJUSTED)
+    assert verdict.level == Level.GOOD
+    names = {check.name for check in verdict.checks}
+    assert {"Weights", "Curvature", "Draws of the levels", "Repeatability", "Hand measurement"} <= names
+    assert not {"Worst observation", "Chain length", "Independence within a view"} & names
+
+
+@pytest.mark.parametrize(
+    ("change", "name", "level", "advice"),
+    [
+        ({"least_eigenvalue": 0.29}, "Curvature", Level.BAD, "Add observations"),
+        ({"effective_draws": 19.0}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
+        ({"pareto_shape": 0.71}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
+        (
+            {"doubtful": tuple(DoubtfulView(n, 0.1, "jump") for n in range(1, 10))},
+            "Weights",
+            Level.CARE,
+            "more than a third",
+        ),
+    ],
+)
+def test_each_fault_of_an_adjustment_is_named_with_what_to_do(change, name, level, advice):
+    verdict = judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, **change)))
+    check = named(verdict, name)
+    assert (check.level, verdict.level) == (level, level)
+    assert advice in check.advice
+    assert verdict.reasons == (check,)
+
+
+def test_a_few_views_that_are_far_off_are_told_and_no_reason_to_doubt():
+    doubtful = (DoubtfulView(7, 0.02, "clock"), DoubtfulView(9, 0.1, "label"))
+    check = named(judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, doubtful=doubtful))), "Weights")
+    assert check.level == Level.GOOD
+    assert "observation 7 (its clock), 9 (labels)" in check.found

@@ -9,17 +9,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from linepose.arrays import Floats
-from linepose.output.adjusted import without_adjustment
+from linepose.output.adjusted import CORRECTION_HEADS, CORRECTION_SCALE, without_adjustment
 from linepose.output.figures.entry import FigureEntry
 from linepose.output.figures.style import BLACK, BLUE, GREY, ORANGE, WIDE_IN, blank_figure, styled
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, MEASUREMENTS
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.table_checks import usable_rows
-from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, OBSERVATIONS
+from linepose.survey.observations import OBSERVATIONS, VARIANCE_COLUMNS
 
-_NAMES: Final = ("North (mm)", "East (mm)", "Down (mm)", "Roll (°)", "Pitch (°)", "Yaw (°)")
-_SCALE: Final = np.array([1e3] * 3 + [float(np.degrees(1.0))] * 3)
-_VARIANCES: Final = [COVARIANCE_COLUMNS[COVARIANCE_INDICES.index((i, i))] for i in range(6)]
+_VARIANCES: Final = list(VARIANCE_COLUMNS)
 _GAP: Final = 0.25  # of a mean observation's duration, drawn between one observation and the next
 _LEAST: Final = 0.3  # of a mean observation's duration, as which a shorter one is drawn
 _LABEL_SHARE: Final = 0.09  # of the axis, which a label takes
@@ -39,13 +37,13 @@ def corrections(measurements: pd.DataFrame, observations: pd.DataFrame) -> Figur
     for index, panel in enumerate(panels.T.ravel()):
         for place, number in enumerate(numbers):
             mine = (rows["observation"] == number).to_numpy()
-            value = _SCALE[index] * rows.loc[mine, CORRECTION_COLUMNS[index]]
-            sigma = _SCALE[index] * rows.loc[mine, f"sigma_{index}"]
+            value = CORRECTION_SCALE[index] * rows.loc[mine, CORRECTION_COLUMNS[index]]
+            sigma = CORRECTION_SCALE[index] * rows.loc[mine, f"sigma_{index}"]
             panel.fill_between(time[mine], -sigma, sigma, color=GREY, alpha=0.3, linewidth=0)
             colour = (BLUE, ORANGE)[place % 2]
             panel.plot(time[mine], value, ".-", color=colour, markersize=2.5, linewidth=0.7)
         panel.axhline(0.0, color=BLACK, linewidth=0.5)
-        panel.set_ylabel(_NAMES[index])
+        panel.set_ylabel(CORRECTION_HEADS[index])
         panel.grid(visible=False, axis="x")
         panel.margins(x=0.01)
     shown = labelled(centre, _LABEL_SHARE * float(time.max()))

@@ -1,13 +1,12 @@
 """The section on the adjustment: what the errors were, which reported sigmas look wrong, and whether halves agree."""
 
 from collections.abc import Sequence
-from typing import Final
 
 import numpy as np
 import pandas as pd
 
 from linepose.arrays import Floats
-from linepose.experiments.adjusted import ADJUSTMENT
+from linepose.experiments.adjustment_beside import ADJUSTMENT
 from linepose.output.adjusted import Halves, halves, has_adjustment, is_adjusted, levels_by_set, set_in_words
 from linepose.output.report.adjustment_on_page import halves_table, level_table, pose_table, sigma_table, view_table
 from linepose.output.report.adjustment_words import FAULT_WORDS, boresight_sentence, levels_sentence, sigmas_sentence
@@ -16,9 +15,7 @@ from linepose.pipeline.adjusted_schemas import MEASUREMENTS, VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.stages import DIAGNOSTICS
 from linepose.pipeline.table_checks import stage_rows
-from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES
-
-_ATTITUDE_VARIANCES: Final = [COVARIANCE_COLUMNS[COVARIANCE_INDICES.index((i, i))] for i in (3, 4, 5)]
+from linepose.survey.observations import VARIANCE_COLUMNS
 
 
 def adjustment_section(calibration: Calibration) -> SectionOnPage | None:
@@ -81,7 +78,7 @@ def _duration_s(calibration: Calibration) -> float:
 
 def _reported_rad(calibration: Calibration) -> Floats:
     """Typical reported sigmas of roll, pitch and yaw (3,)."""
-    return np.sqrt(calibration.observations[_ATTITUDE_VARIANCES].to_numpy().mean(axis=0))
+    return np.sqrt(calibration.observations[list(VARIANCE_COLUMNS[3:])].to_numpy().mean(axis=0))
 
 
 def _warnings(calibration: Calibration) -> list[str]:

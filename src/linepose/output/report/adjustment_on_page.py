@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from linepose.experiments.adjusted import ALL
+from linepose.experiments.adjustment_beside import ALL
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.output.adjusted import Halves, estimates, set_in_words
+from linepose.output.adjusted import CORRECTION_HEADS, CORRECTION_SCALE, Halves, estimates, set_in_words
 from linepose.output.report.adjustment_words import (
     FAULT_WORDS,
     LEVEL_WORDS,
@@ -19,8 +19,6 @@ from linepose.output.report.sections import TableOnPage
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.evidence import pose_numbers
-
-_CORRECTION_HEADS = ("North (mm)", "East (mm)", "Down (mm)", "Roll (°)", "Pitch (°)", "Yaw (°)")
 
 
 def pose_table(anchor: str, calibration: Calibration) -> TableOnPage:
@@ -100,14 +98,13 @@ def halves_table(anchor: str, found: Sequence[Halves]) -> TableOnPage:
 
 def view_table(anchor: str, views: pd.DataFrame) -> TableOnPage:
     """Each observation's weight, what its errors look like if it is far off, and its mean correction."""
-    scale = np.array([1e3] * 3 + [float(np.degrees(1.0))] * 3)
     rows = []
     for _, row in views.iterrows():
-        mean = scale * row[list(CORRECTION_COLUMNS)].to_numpy(dtype=float)
+        mean = CORRECTION_SCALE * row[list(CORRECTION_COLUMNS)].to_numpy(dtype=float)
         cells = [f"{value + 0.0:.{1 if k < 3 else 3}f}" if np.isfinite(value) else "" for k, value in enumerate(mean)]
         weight = f"{row['weight']:.2f}" if np.isfinite(row["weight"]) else ""
         rows.append([str(row["observation"]), weight, FAULT_WORDS.get(row["fault"], ""), *cells])
-    heads = ["Observation", "Weight", "Errors look", *_CORRECTION_HEADS]
+    heads = ["Observation", "Weight", "Errors look", *CORRECTION_HEADS]
     sentence = f"weight and mean correction of {len(rows)} observations"
     return TableOnPage(anchor, "Observations", sentence, heads, rows)
 

@@ -8,7 +8,7 @@ import pandas as pd
 
 from linepose.adjustment.thresholds import CLOCK, JUMP, LABEL
 from linepose.arrays import Floats
-from linepose.experiments.adjusted import INLIERS
+from linepose.experiments.adjustment_beside import INLIERS
 from linepose.output.adjusted import common_share, set_in_words
 
 LEVEL_WORDS: Final = {

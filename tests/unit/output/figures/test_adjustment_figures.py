@@ -195,7 +195,9 @@ def test_what_makes_no_sense_for_the_adjustment_has_a_reason():
 def test_without_an_adjustment_its_figures_are_left_out():
     alone = made_up.platform(experiments={})
     reasons = {entry.name: entry.left_out(alone) for entry in FIGURES}
-    assert all("experiments.adjustment is null" in reasons[name] for name in ("levels", "corrections", "estimates"))
+    assert all(
+        "experiments.adjustment_beside is null" in reasons[name] for name in ("levels", "corrections", "estimates")
+    )
     assert "repeatability" in reasons["halves"]
     assert not reasons["repeatability"]
 

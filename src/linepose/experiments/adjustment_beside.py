@@ -44,7 +44,7 @@ ADJUSTMENT: Final = pa.schema(
 ADJUSTED_SPLITS: Final = pa.schema([*texts("set"), *SPLITS])
 
 
-class AdjustedSettings(Settings):
+class AdjustmentBesideSettings(Settings):
     """The adjustment beside a noise model that removes observations."""
 
     platforms: list[str] = Field(
@@ -57,8 +57,8 @@ class AdjustedSettings(Settings):
 
 
 SECTION: Final = Section(
-    "adjustment",
-    AdjustedSettings,
+    "adjustment_beside",
+    AdjustmentBesideSettings,
     None,
     "The adjustment beside, of platforms whose noise model removes observations.",
 )
@@ -138,7 +138,7 @@ def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
 
 
 EXPERIMENT: Final = Experiment(
-    name="adjusted",
+    name="adjustment_beside",
     title="The adjustment beside",
     outputs={"adjustment": ADJUSTMENT, "adjusted_splits": ADJUSTED_SPLITS, **ADJUSTED},
     run=_run,
