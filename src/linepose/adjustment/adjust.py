@@ -10,7 +10,15 @@ from linepose.adjustment.curvature import Curvature, curvature
 from linepose.adjustment.estimate import Estimate, unit_weights
 from linepose.adjustment.hand_measured import HandMeasuredPrior, hand_measured
 from linepose.adjustment.heavy_tailed import with_tails
-from linepose.adjustment.many_points import MANY_POINTS, normalised_of_many, solve_many, some_points, spread_of_many
+from linepose.adjustment.levels import log_from_levels
+from linepose.adjustment.many_points import (
+    MANY_POINTS,
+    normalised_of_many,
+    slopes_by_levels,
+    solve_many,
+    some_points,
+    spread_of_many,
+)
 from linepose.adjustment.measurements import KnownPoints, Measurements, measurements_from_survey
 from linepose.adjustment.normal import point_covariances, trailing_inverse
 from linepose.adjustment.posterior import Mixture, mixture
@@ -76,7 +84,14 @@ def adjust(
         tails=bool(np.any(found.weights.of_measurement != 1)),
     )
     n = knowledge.n_sought
-    spread = spread_of_many(spread, trailing_inverse(found.solution.done.upper, n), many.camera_covariance[-n:, -n:])
+    mode = log_from_levels(found.levels)
+    spread = spread_of_many(
+        spread,
+        trailing_inverse(found.solution.done.upper, n),
+        many.camera_covariance[-n:, -n:],
+        mode,
+        slopes_by_levels(measurements, knowledge, many, spread, mode),
+    )
     normalised = normalised_of_many(many, measurements.n_points)
     fit = Fit(
         many.state,

@@ -66,6 +66,14 @@ class State:
         )
 
 
+def camera_step(before: State, after: State) -> Floats:
+    """Step (9,) of the camera's columns of the normal equations that takes one state to the other."""
+    turn = rotations.rotation_vector_from_matrix(after.rotation @ before.rotation.T)
+    intrinsics = [after.principal_point_px - before.principal_point_px, after.focal_length_m - before.focal_length_m]
+    clock_s = after.clock_offset_s - before.clock_offset_s
+    return np.concatenate([intrinsics, [clock_s], after.position_m - before.position_m, turn])
+
+
 def state_at(pose: Floats, camera: Camera, points_m: Floats, n_measurements: int) -> State:
     """The state at a pose (6,) and points (K, 3): intrinsics of the camera's file, no clock offset, no corrections."""
     return State(

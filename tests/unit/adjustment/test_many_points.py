@@ -7,9 +7,12 @@ from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.adjustment import adjust as adjust_module
 from linepose.adjustment.estimate import unit_weights
 from linepose.adjustment.iterative import Preconditioner, Smooth, blocks, conjugate_gradients, equations, smooth
-from linepose.adjustment.many_points import solve_many
+from linepose.adjustment.levels import levels_from_log, log_from_levels
+from linepose.adjustment.many_points import slopes_by_levels, solve_many, spread_of_many
 from linepose.adjustment.normal import solve_step, trailing_inverse
+from linepose.adjustment.posterior import Mixture
 from linepose.adjustment.solve import solve
+from linepose.adjustment.state import camera_step
 from unit.adjustment import timed_survey
 from unit.adjustment.test_against_dense import LEVELS, Case
 
@@ -69,3 +72,28 @@ def test_an_adjustment_of_many_points(monkeypatch):
     assert np.all(np.abs(many.pose - few.pose) < 0.2 * few.sigma)
     assert np.allclose(many.sigma, few.sigma, rtol=0.15)
     assert many.diagnostics.converged
+
+
+def test_the_pose_follows_the_levels_as_the_dense_solution_does(case):
+    """Half of each draw a twentieth up and half of it down: sigmas of 0.05, and one level that is not estimated."""
+    weights, mode, n = unit_weights(case.measurements), log_from_levels(LEVELS), case.knowledge.n_sought
+    many = solve_many(case.measurements, case.knowledge, case.state, LEVELS, weights)
+    signs = np.array([[1.0], [-1.0]]) * np.array([0.05] * 6 + [0.0])
+    draws = Mixture(np.full(2, 0.5), np.zeros((2, n)), np.tile(np.eye(n), (2, 1, 1)), mode + signs, np.zeros(2), 0.0)
+    slopes = slopes_by_levels(case.measurements, case.knowledge, many, draws, mode)
+    assert slopes.shape == (7, n)
+    np.testing.assert_array_equal(slopes[6], 0.0)
+    sigma = np.sqrt(np.diag(many.camera_covariance))[-n:]
+    for index in range(6):
+        moved = mode.copy()
+        moved[index] += 0.05
+        ends = [
+            solve(case.measurements, case.knowledge, case.state, levels, weights, tolerance=1e-12).state
+            for levels in (LEVELS, levels_from_log(moved))
+        ]
+        expected = camera_step(*ends)[-n:] / 0.05
+        # each solution stops within a thousandth of a sigma or so
+        np.testing.assert_allclose(slopes[index] / sigma, expected / sigma, atol=0.1)
+    spread = spread_of_many(draws, np.eye(n), 4 * np.eye(n), mode, slopes)
+    np.testing.assert_allclose(spread.mean, signs @ slopes)
+    np.testing.assert_allclose(spread.covariance[0], 4 * np.eye(n))
