@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from linepose.adjustment.assemble import Fit, assembled
 from linepose.adjustment.curvature import Curvature, curvature
 from linepose.adjustment.estimate import Estimate, unit_weights
-from linepose.adjustment.hand_measured import HandMeasuredPrior, hand_measured
+from linepose.adjustment.hand_measured import HandMeasuredPrior, hand_measured, ran_off
 from linepose.adjustment.heavy_tailed import with_tails
 from linepose.adjustment.levels import log_from_levels
 from linepose.adjustment.many_points import (
@@ -100,7 +100,7 @@ def adjust(
         many.weights,
         normalised,
         many.chi_squared,
-        many.converged and found.converged,
+        many.converged and found.converged and not ran_off(hand, many.state.position_m),
         np.full((measurements.n_points, 3, 3), np.nan),
     )
     return assembled(survey, measurements, knowledge, fit, found, curved, spread, settings)
@@ -131,7 +131,7 @@ def _of_all(
         found.weights,
         normalised_residuals(solution.done),
         solution.done.chi_squared,
-        found.converged,
+        found.converged and not ran_off(hand, solution.state.position_m),
         point_covariances(solution.done.upper, measurements.n_points),
     )
     return fit, found, curved, spread

@@ -6,6 +6,7 @@ is, where sigmas of Euler angles shrink to nothing as pitch nears a right angle.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.geometry.pose import check_pose
+
+FARTHEST_SIGMAS: Final = 20.0  # of the hand measurement ...
+FARTHEST_M: Final = 2.0  # ... but no nearer than this
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,14 @@ def hand_measured(pose: Floats, covariance: Floats) -> HandMeasuredPrior:
             "give positive sigmas",
         )
     return HandMeasuredPrior(check_pose(pose, "hand-measured pose"), matrix)
+
+
+def ran_off(hand: HandMeasuredPrior | None, position_m: Floats) -> bool:
+    """Whether a position (3,) is so far from the hand-measured one that no tape measure explains it."""
+    if hand is None:
+        return False
+    sigma_m = np.sqrt(np.diag(hand.covariance)[:3])
+    return bool(np.any(np.abs(position_m - hand.pose[:3]) > np.maximum(FARTHEST_SIGMAS * sigma_m, FARTHEST_M)))
 
 
 def covariance_of_sigmas(position_m: float, rotation_rad: float) -> Floats:

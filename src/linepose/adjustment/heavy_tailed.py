@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from linepose.adjustment.estimate import Estimate, estimate, free_levels, unit_weights
+from linepose.adjustment.hand_measured import ran_off
 from linepose.adjustment.levels import Levels, levels_from_log, log_from_levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.reml import Restricted, most_likely
@@ -52,7 +53,7 @@ def with_tails(
             raise failure or EstimationError("adjustment: no estimate")
         return normal
     candidates = [normal] if normal is not None else []
-    for kind in TailKind if normal is None or not normal.converged else _promising(normal):
+    for kind in _promising(normal) if normal is not None and _is_sound(normal, guided) else TailKind:
         tails = unit_tail_weights(measurements, kind)
         try:
             heavy, tails = _heavy_tailed(measurements, guided, start, settings.start, tails, settings)
@@ -64,7 +65,12 @@ def with_tails(
         candidates.append(heavy)
     if not candidates:
         raise failure or EstimationError("adjustment: no estimate")
-    return max(candidates, key=_preference)
+    return max(candidates, key=lambda one: (_is_sound(one, guided), _preference(one)))
+
+
+def _is_sound(one: Estimate, guided: Knowledge) -> bool:
+    """Whether an estimate has converged, not beyond what a tape measure explains."""
+    return one.converged and not ran_off(guided.hand, one.solution.state.position_m)
 
 
 def _preference(one: Estimate) -> float:

@@ -21,11 +21,11 @@ from linepose.arrays import Floats
 class Quality:
     """What tells whether the result can be trusted.
 
-    converged: chi squared and levels; least_eigenvalue: of the curvature in units of the normal equations, NaN where it
-    could not be had; effective_draws, pareto_shape: of the draws of the levels; disagreement_sigmas (6,): of the hand
-    measurement from what the data alone say, NaN without one; open_directions: names of the pose's parameters that the
-    data leave to the hand measurement; drift_known: whether there are times; clock_known: whether the data tell the
-    clock offset where it was sought.
+    converged: chi squared and levels, and not where no tape measure can have been; least_eigenvalue: of the curvature
+    in units of the normal equations, NaN where it could not be had; effective_draws, pareto_shape: of the draws of the
+    levels; disagreement_sigmas (6,): of the hand measurement from what the data alone say, NaN without one;
+    open_directions: names of the pose's parameters that the data leave to the hand measurement; drift_known: whether
+    there are times; clock_known: whether the data tell the clock offset, where it is sought.
     """
 
     converged: bool
@@ -114,7 +114,10 @@ def warnings_of(quality: Quality) -> tuple[str, ...]:
     """What a user should be told, one line each."""
     said = []
     if not quality.converged:
-        said.append("the adjustment has not converged: start from a pose nearer to the camera's")
+        said.append(
+            "the adjustment has not converged, or not to where a tape measure can have been: check the hand "
+            "measurement, and let it count as a prior"
+        )
     if not quality.least_eigenvalue >= TRUSTED_EIGENVALUE:
         said.append(
             f"chi squared curves {quality.least_eigenvalue:.2f} of what the normal equations say in one direction, "

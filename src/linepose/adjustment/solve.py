@@ -28,6 +28,7 @@ _LARGEST_TURN_RAD: Final = 0.3
 _LARGEST_SHIFT_M: Final = 1.0
 _FREE_STEPS: Final = 2  # in which chi squared may rise, as the first corrections bend the linear model
 _ALLOWED_RISE: Final = 0.1
+_SETTLING: Final = 2  # linearisations until corrections belong to their camera and points
 
 
 @dataclass(frozen=True)
@@ -108,8 +109,10 @@ def solve(
     """The minimum of chi squared near a start.
 
     It has converged when a step would lower chi squared by less than `tolerance`, and chi squared moves by less than
-    that when it is linearised anew. The last `n_held` columns, of the pose and what else is sought, keep their start.
-    Raises EstimationError where a point is behind the camera at the start, or the normal equations are singular.
+    that when it is linearised anew. Where full steps rise, the camera's is damped, and chi squared is judged with the
+    corrections that belong to the step: with those of the step before it need not fall however short the step. The
+    last `n_held` columns, of the pose and what else is sought, keep their start. Raises EstimationError where a point
+    is behind the camera at the start, or the normal equations are singular.
     """
     model = model_at(measurements, knowledge, start)
     if model is None:
@@ -128,23 +131,44 @@ def solve(
         step = _step(done, damping, n_held)
         dual = unwhiten(done.factor, whitened_residual(done, step))
         correction, z, q = corrections(structure, process, model.linearised, levels, weights, dual)
-        gain = done.chi_squared_before - _after(done, step)
-        if steps >= max_steps or (converged and gain < tolerance):
+        near = done.chi_squared_before - _after(done, step) < tolerance / (1 + damping)
+        if steps >= max_steps or (converged and near):
             break
         trial = model_at(measurements, knowledge, model.state.moved(_held(step), correction))
         steps += 1
+        if trial is not None and damping > floor:
+            trial = _with_its_corrections(measurements, knowledge, trial, levels, weights)
         if trial is not None:
             trial_process, trial_done = pass_at(measurements, trial, levels, weights)
             change = trial_done.chi_squared_before - done.chi_squared_before
             if change <= max(tolerance, _ALLOWED_RISE * done.chi_squared_before if steps <= _FREE_STEPS else 0.0):
-                converged = gain < tolerance and abs(change) < tolerance
+                converged = near and abs(change) < tolerance
                 model, process, done = trial, trial_process, trial_done
                 damping = max(floor, damping / 10) if damping > 1e-7 else 0.0
                 continue
         if damping > _LARGEST_DAMPING:
             break
+        if damping <= floor:
+            model = _with_its_corrections(measurements, knowledge, model, levels, weights) or model
+            process, done = pass_at(measurements, model, levels, weights)
         damping = max(10 * damping, 1e-3)
     return Solution(model, process, done, dual, z, q, steps, converged)
+
+
+def _with_its_corrections(
+    measurements: Measurements, knowledge: Knowledge, model: Model, levels: Levels, weights: Weights
+) -> Model | None:
+    """The model linearised at the corrections that belong to its camera and points; None where one is behind it."""
+    settled: Model | None = model
+    for _ in range(_SETTLING):
+        if settled is None:
+            break
+        process, done = pass_at(measurements, settled, levels, weights)
+        still = np.zeros(len(done.upper) - 1)
+        dual = unwhiten(done.factor, whitened_residual(done, still))
+        correction, _, _ = corrections(measurements.structure, process, settled.linearised, levels, weights, dual)
+        settled = model_at(measurements, knowledge, settled.state.moved(still, correction))
+    return settled
 
 
 def _after(done: Pass, step: Floats) -> float:

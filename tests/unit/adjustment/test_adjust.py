@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linepose.adjustment import AdjustmentSettings, KnownPoints, adjust
-from linepose.adjustment.hand_measured import covariance_of_sigmas
+from linepose.adjustment.hand_measured import covariance_of_sigmas, hand_measured, ran_off
 from linepose.adjustment.motion import line_period_s
 from linepose.errors import EstimationError, InputError
 from linepose.geometry.pose import POSE_COLUMNS
@@ -89,6 +89,13 @@ def test_a_hand_measurement_far_off_is_told(survey):
     found = adjust(survey, CAMERA, far, covariance_of_sigmas(0.01, 0.1), QUICK)
     assert np.nanmax(np.abs(found.diagnostics.disagreement_sigmas)) > 3
     assert any("disagree" in line for line in found.diagnostics.warnings)
+
+
+@pytest.mark.parametrize(("off_m", "sigma_m", "far"), [(1.9, 0.01, False), (2.1, 0.01, True), (2.1, 0.2, False)])
+def test_where_no_tape_measure_can_have_been(off_m, sigma_m, far):
+    known = hand_measured(timed_survey.POSE, covariance_of_sigmas(sigma_m, 0.1))
+    assert ran_off(known, timed_survey.POSE[:3] - [0.0, off_m, 0.0]) is far
+    assert not ran_off(None, timed_survey.POSE[:3] + 100.0)
 
 
 def test_without_times_drift_is_not_known_and_that_is_said(survey):
