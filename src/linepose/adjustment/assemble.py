@@ -160,13 +160,14 @@ def _diagnostics(
 
 
 def _beside_hand(hand: HandMeasuredPrior, state: State, covariance: Floats) -> tuple[Floats, tuple[str, ...]]:
-    """How many sigmas the hand measurement is off what the data say alone (6,), and what the data leave to it."""
+    """How many sigmas the hand measurement is off what the data alone say (6,), and what the data leave to it.
+
+    Where they leave it to the hand measurement, how many sigmas of it the estimate is off.
+    """
     hand_matrix = rotations.matrix_from_rotation_vector(hand.pose[3:])
     turn = rotations.rotation_vector_from_matrix(hand_matrix @ state.rotation.T)
     error = np.concatenate([hand.pose[:3] - state.position_m, turn])
     prior, posterior = np.diag(hand.covariance), np.diag(covariance)
-    left = np.maximum(prior - posterior, 0.01 * prior)
-    open_ = tuple(
-        name for name, share in zip(POSE_COLUMNS, np.sqrt(posterior / prior), strict=True) if share > _OPEN_SHARE
-    )
-    return error / np.sqrt(left), open_
+    is_open = posterior > _OPEN_SHARE**2 * prior
+    variance = np.where(is_open, prior, prior - posterior)
+    return error / np.sqrt(variance), tuple(name for name, one in zip(POSE_COLUMNS, is_open, strict=True) if one)

@@ -8,7 +8,7 @@ import numpy as np
 from linepose.adjustment.levels import LEVEL_NAMES, Levels, levels_from_log, log_from_levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.process import Weights
-from linepose.adjustment.reml import Restricted, most_likely
+from linepose.adjustment.reml import Restricted, most_likely, shortened
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.solve import Solution, solve
 from linepose.adjustment.state import Knowledge, State
@@ -65,7 +65,7 @@ def estimate(
     if not measurements.timed:
         logs[LEVEL_NAMES.index("drift")] = -np.inf
         levels = levels_from_log(logs)
-    state, passes, settled, rounds = start, 0, False, 0
+    state, passes, settled, rounds, share, last = start, 0, False, 0, 1.0, None
     while True:
         ends = settled or rounds >= settings.max_rounds
         tolerance = _TIGHT if ends else _LOOSE
@@ -76,9 +76,11 @@ def estimate(
             break
         after, count = most_likely(restricted, before, _SLOPES[min(rounds, 1)])
         rounds, passes = rounds + 1, passes + count
-        logs = restricted.log_levels(after)
+        move = after - before
+        share, last = shortened(share, move, last), move
+        logs = restricted.log_levels(before + share * move)
         levels, state = levels_from_log(logs), solution.state
-        settled = bool(np.max(np.abs(after - before)) < LEVEL_TOLERANCE)
+        settled = bool(np.max(np.abs(move)) < LEVEL_TOLERANCE)
     evidence = -restricted.negative_log_density(before)
     return Estimate(
         solution, levels, before, restricted, weights, evidence, rounds, passes, settled and solution.converged

@@ -9,7 +9,7 @@ from linepose.adjustment.estimate import Estimate, estimate, free_levels, unit_w
 from linepose.adjustment.hand_measured import ran_off
 from linepose.adjustment.levels import Levels, levels_from_log, log_from_levels
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.reml import Restricted, most_likely
+from linepose.adjustment.reml import Restricted, most_likely, shortened
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.solve import solve
 from linepose.adjustment.state import Knowledge, State
@@ -107,7 +107,7 @@ def _heavy_tailed(
     if not measurements.timed:
         logs[0] = -np.inf
         levels = levels_from_log(logs)
-    passes, rounds, settled = 0, 0, False
+    passes, rounds, settled, share, last = 0, 0, False, 1.0, None
     while True:
         rounds += 1
         for _ in range(_SWEEPS):
@@ -120,11 +120,13 @@ def _heavy_tailed(
         weights = tails.applied(measurements)
         restricted = Restricted(measurements, solution.model, weights, settings.priors, free, logs)
         start = restricted.start(levels)
-        log_levels, count = most_likely(restricted, start, _SLOPE)
-        passes += count
+        likeliest, count = most_likely(restricted, start, _SLOPE)
+        passes, move = passes + count, likeliest - start
+        share, last = shortened(share, move, last), move
+        log_levels = start + share * move
         logs = restricted.log_levels(log_levels)
         levels = levels_from_log(logs)
-        settled = bool(np.max(np.abs(log_levels - start)) < _LEVEL_TOLERANCE and moved < _WEIGHT_TOLERANCE)
+        settled = bool(np.max(np.abs(move)) < _LEVEL_TOLERANCE and moved < _WEIGHT_TOLERANCE)
         if settled or rounds >= _ROUNDS:
             break
     solution = solve(measurements, knowledge, state, levels, weights, tolerance=_TIGHT)

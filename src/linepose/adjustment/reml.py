@@ -24,6 +24,7 @@ from linepose.arrays import Floats
 
 LOG_RANGE: Final = (-12.0, 14.0)  # of a level's logarithm
 NOTHING: Final = 1e10  # in place of infinity, where the density is zero
+_TAKEN_BACK: Final = 0.7  # of a move, by the next one
 
 
 @dataclass(frozen=True)
@@ -107,3 +108,13 @@ def most_likely(restricted: Restricted, start: Floats, slope: float = 1e-3) -> t
         options={"maxiter": 100, "ftol": 1e-10, "gtol": slope},
     )
     return np.asarray(found.x), int(found.nfev)
+
+
+def shortened(share: float, move: Floats, last: Floats | None) -> float:
+    """The share of a move (F,) of the levels' logarithms that is made, where the one before was `last` (F,).
+
+    Halved where a move takes back most of the last: levels and the linearisation they lead to would go in a circle.
+    """
+    if last is None or move @ last > -_TAKEN_BACK * (last @ last):
+        return share
+    return share / 2

@@ -160,8 +160,10 @@ def test_points_of_a_view_at_one_time(survey):
 def test_passes_along_one_straight_line_leave_the_height_of_the_camera_to_the_hand_measurement():
     flight = strips.make_flight(4, 30).select([1, 2])
     start = strips.POSE + np.array([0.03, 0.02, -0.05, 0.0, 0.0, 0.0])
-    found = adjust(flight, CAMERA, start, settings=QUICK.replaced(line_period_s=strips.LINE_S, tails=False))
+    found = adjust(flight, CAMERA, start, settings=QUICK.replaced(line_period_s=strips.LINE_S))
+    assert found.diagnostics.converged
     assert "r_z_m" in found.diagnostics.open_directions
+    assert not any("disagree" in line for line in found.diagnostics.warnings)
     assert any("leave r_" in line and "r_z_m" in line for line in found.diagnostics.warnings)
     assert found.pose[2] == pytest.approx(start[2], abs=0.05)
     assert found.sigma[2] == pytest.approx(0.1, rel=0.1)
