@@ -52,6 +52,10 @@ def new(
         ),
     ] = None,
     navigation: Annotated[str | None, typer.Option(help="File of the navigation log, for scans.")] = None,
+    navigation_file: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="A navigation log to look into: its format and preset are taken from it."),
+    ] = None,
     description: Annotated[str | None, typer.Option(help="One line for people.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a platform file of this name.")] = False,
     project: Annotated[
@@ -66,6 +70,11 @@ def new(
     from linepose.config.platform import load_platform
 
     check_name(name)
+    navigation_keys: dict[str, Any] = {}
+    if navigation_file is not None:
+        source = source or "scans"
+        navigation_format, navigation_keys = _recognised(navigation_file, navigation_format)
+        navigation = navigation or navigation_file.name
     needed = (focal_length_mm, pixel_pitch_um, pixels, position_m, euler_deg)
     asks = any(value is None for value in needed)
     root, platforms = _places(project)
@@ -108,6 +117,7 @@ def new(
             dataset=dataset or name,
             navigation_format=navigation_format or "",
             navigation=navigation or "",
+            navigation_keys=navigation_keys,
         ),
         force,
     )
@@ -116,6 +126,21 @@ def new(
     files = ", ".join(files_of_source(load_platform(platforms, name).source))
     typer.echo(f"next: put {files} into {root / 'data' / (dataset or name)}; {path.name} says what each must hold")
     typer.echo(f"then: linepose check {name}")
+
+
+def _recognised(path: Path, chosen: str | None) -> tuple[str, dict[str, Any]]:
+    """Name of a log's format and its keys, by what the file holds; the format that is chosen, where one is."""
+    from linepose.errors import InputError
+    from linepose.inputs.navigation.registry import FORMATS, recognised
+
+    if not path.exists():
+        raise InputError(str(path), "no such file", "a navigation log", "correct --navigation-file")
+    name, keys = recognised(path, chosen)
+    if name is None:
+        remedy = "give --navigation-format and --navigation instead (docs/formats.md)"
+        raise InputError(str(path), "no log that is recognised", f"one of {', '.join(FORMATS.names())}", remedy)
+    typer.echo(f"{path}: {', '.join([f'format {name}', *(f'{key} {value}' for key, value in keys.items())])}")
+    return name, keys
 
 
 def _places(project: Path) -> tuple[Path, Path]:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal, get_args, get_origin
 
@@ -28,6 +28,7 @@ class NewPlatform:
     """What a person knows of a new platform; units in the names, as in the platform file.
 
     `navigation` is a file (CSV, Parquet) or, with `navigation_format`, a log in that format; for scans only.
+    `navigation_keys` are what is known of the log's own keys.
     """
 
     name: str
@@ -44,6 +45,7 @@ class NewPlatform:
     dataset: str = ""
     navigation_format: str = ""
     navigation: str = ""
+    navigation_keys: Mapping[str, Any] = field(default_factory=dict)
 
 
 def check_name(name: str) -> str:
@@ -185,22 +187,37 @@ def _source(new: NewPlatform) -> list[str]:
             "  navigation: # what each key means: docs/formats.md",
             f"    format: {new.navigation_format}",
             f"    file: {_quoted(new.navigation or 'navigation.*')} # below the data set's folder",
-            *_format_keys(FORMATS.member(new.navigation_format).section),
+            *_format_keys(FORMATS.member(new.navigation_format).section, new.navigation_keys),
         ]
-    if not new.navigation_format or not FORMATS.member(new.navigation_format).has_covariances:
+    if not _has_covariances(new):
         lines.append("  covariances: covariances.csv # rows of time (us) and the row-major 12x12 covariance")
     return lines
 
 
-def _format_keys(section: type[NavigationFormatSection]) -> list[str]:
-    """The keys of a navigation format that have a default, each with what it may be."""
+def _has_covariances(new: NewPlatform) -> bool:
+    """Whether the log itself holds covariances, so that no file of their own is named."""
+    if not new.navigation_format:
+        return False
+    chosen = FORMATS.member(new.navigation_format)
+    if not new.navigation_keys:
+        return chosen.has_covariances
+    section = chosen.section(**{"format": chosen.name, "file": new.navigation, **new.navigation_keys})
+    columns = getattr(section, "columns", None)
+    return chosen.has_covariances or getattr(columns, "sigma_position", None) is not None
+
+
+def _format_keys(section: type[NavigationFormatSection], known: Mapping[str, Any]) -> list[str]:
+    """The keys of a navigation format that are known, or else all that have a default, each with what it may be."""
     lines = []
-    for key, field in section.model_fields.items():
-        value = field.get_default(call_default_factory=True)
+    for key, of_key in section.model_fields.items():
+        if known and key not in known:
+            continue
+        value = known.get(key, of_key.get_default(call_default_factory=True))
         if isinstance(value, Settings):
             value = value.model_dump(mode="json", exclude_none=True)
-        if key not in NavigationFormatSection.model_fields and value is not None and not field.is_required():
-            about = f"{_choices(field.annotation)}{field.description or ''}".rstrip(".")
+        is_set = value not in (None, ()) and (known or not of_key.is_required())
+        if is_set and key not in NavigationFormatSection.model_fields:
+            about = f"{_choices(of_key.annotation)}{of_key.description or ''}".rstrip(".")
             lines.append(f"    {key}: {_quoted(value)} # {about}")
     return lines
 

@@ -93,6 +93,34 @@ def test_new_takes_every_navigation_format(here, name):
 
 
 @pytest.mark.parametrize(
+    ("file", "text", "keys"),
+    [
+        ("log.txt", "1 151.0 -33.0 42.0 5.0 -10.0 30.0 252818.25\n", {"format": "table", "preset": "hyspex"}),
+        ("a.gps", "#INSPVAXA,COM1,0,73.5,FINESTEERING,1695,309428.0\n", {"format": "novatel"}),
+        ("run.bag", "", {"format": "rosbag"}),
+        ("run.lcf", "", {"format": "resonon"}),
+        ("sbet.out", "", {"format": "sbet"}),
+    ],
+)
+def test_new_recognises_a_log(here, file, text, keys):
+    (here / file).write_text(text)
+    result = given("new", "mine", *GIVEN, "--navigation-file", file)
+    assert result.exit_code == 0, result.output
+    assert f"{file}: format {keys['format']}" in result.stdout
+    navigation = load_platform(here / "config" / "platforms", "mine").source.navigation
+    assert navigation.file == file
+    assert {key: getattr(navigation, key) for key in keys} == keys
+
+
+def test_new_tells_a_log_that_it_does_not_know(here):
+    (here / "log.txt").write_text("time,x\n1,2\n")
+    result = given("new", "mine", *GIVEN, "--navigation-file", "log.txt")
+    assert "log.txt: found no log that is recognised, expected one of" in one_line(result)
+    assert given("new", "mine", *GIVEN, "--navigation-file", "log.txt", "--navigation-format", "table").exit_code == 0
+    assert "none.txt: found no such file" in one_line(given("new", "two", *GIVEN, "--navigation-file", "none.txt"))
+
+
+@pytest.mark.parametrize(
     ("option", "numbers", "told"),
     [
         ("--position-m", ["0.2", "0"], "--position-m: found 0.2 0, expected three numbers: forward right down (m)"),

@@ -53,18 +53,24 @@ class GeodeticSection(NavigationFormatSection):
     )
 
 
+def _is_not_recognised(_: Path) -> None:
+    """No file is taken for a log of the format."""
+
+
 @dataclass(frozen=True)
 class NavigationFormat:
     """A navigation format: its name, the model of its keys, and what reads the logs of a data set's folder.
 
     `read` takes the section and the folder and returns a linepose.inputs.navigation.NavigationRecord.
     `has_covariances`: whether such logs as a rule hold covariances, so that no file of their own is needed.
+    `recognise` returns the keys beside `format` and `file` that a log of this format needs, None for any other file.
     """
 
     name: str
     section: type[NavigationFormatSection]
     read: "Callable[[Any, Path], NavigationRecord]"
     has_covariances: bool = True
+    recognise: "Callable[[Path], dict[str, Any] | None]" = _is_not_recognised
 
 
 def with_contents(paths: Iterable[Path]) -> set[Path]:

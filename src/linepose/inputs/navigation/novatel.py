@@ -29,6 +29,7 @@ from linepose.inputs.navigation.record import Covariances, NavigationRecord, Pos
 Row = tuple[float, ...]
 
 _SHORT_NAMES: Final = {"INSPVAS": "INSPVA", "INSSTDEVS": "INSSTDEV", "INSCOVS": "INSCOV"}
+_HEAD_BYTES: Final = 4096
 _USABLE: Final = {2, 3, 6, 7}  # high variance, good, free (without GNSS), alignment complete
 _SIGMAS: Final = ("latitude", "longitude", "height", "roll", "pitch", "azimuth")
 _ASCII_CUT: Final = re.compile(rb"[#%][^\r\n]*\*[0-9a-fA-F]{8}\n")  # a message whose CR LF became LF
@@ -66,7 +67,16 @@ def read(section: NovatelSection, folder: Path) -> NavigationRecord:
     return geodetic_record(poses, covariances, section)
 
 
-FORMAT: Final = NavigationFormat("novatel", NovatelSection, read)
+def _is_log(path: Path) -> dict[str, Any] | None:
+    """A file that has the beginning of a message near its own."""
+    if path.is_dir():
+        return None
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+    return {} if re.search(rb"[#%]\w+A,|\xaaD[\x12\x13]", head) else None
+
+
+FORMAT: Final = NavigationFormat("novatel", NovatelSection, read, recognise=_is_log)
 
 
 def read_messages(path: Path) -> Messages:

@@ -1,5 +1,6 @@
 """Reading a platform's navigation log, whatever format its file names."""
 
+import datetime
 from pathlib import Path
 
 from linepose.errors import InputError
@@ -24,9 +25,8 @@ def read_navigation(section: ScansSection | NavigationFormatSection | str, folde
     navigation = section.navigation if isinstance(section, ScansSection) else section
     if isinstance(navigation, str):
         return NavigationRecord(read_navigation_log(folder / navigation), None)
-    if isinstance(section, ScansSection) and _lacks_week(navigation):
-        week = gps_time.week_at(first_time_us(section, folder))
-        navigation = navigation.model_copy(update={"gps_week": week})
+    if isinstance(section, ScansSection):
+        navigation = _with_day_of_scans(navigation, section, folder)
     record: NavigationRecord = FORMATS.member(navigation.format).read(navigation, folder)
     return record
 
@@ -46,6 +46,19 @@ def log_covariances(
     return record.covariances
 
 
-def _lacks_week(navigation: NavigationFormatSection) -> bool:
-    counts_weeks = getattr(navigation, "time_scale", "gps_week") == "gps_week"
-    return counts_weeks and getattr(navigation, "gps_week", 0) is None
+def _with_day_of_scans(
+    navigation: NavigationFormatSection, source: ScansSection, folder: Path
+) -> NavigationFormatSection:
+    """The section with the GPS week or the day of the scans' first line, where its log counts from one and has none."""
+    scale = getattr(navigation, "time_scale", "gps_week")
+    if scale == "gps_week" and getattr(navigation, "gps_week", 0) is None and not _has_weeks(navigation):
+        return navigation.model_copy(update={"gps_week": gps_time.week_at(first_time_us(source, folder))})
+    if scale in {"day", "gps_day"} and getattr(navigation, "date", 0) is None:
+        first_us = first_time_us(source, folder)
+        day = datetime.datetime.fromtimestamp(first_us / 1e6, datetime.UTC).date()
+        return navigation.model_copy(update={"date": day})
+    return navigation
+
+
+def _has_weeks(navigation: NavigationFormatSection) -> bool:
+    return getattr(getattr(navigation, "columns", None), "week", None) is not None

@@ -124,6 +124,7 @@ def nearest_rows(time_us: NDArray[np.int64], wanted_us: NDArray[np.int64]) -> ND
 
 
 def _joined_poses(parts: Sequence[Poses]) -> Poses:
+    parts = [_in_order(part) for part in parts]
     for part in parts:
         _check(part)
     parts = [_without_repeats(part) for part in parts]
@@ -145,6 +146,18 @@ def _joined_poses(parts: Sequence[Poses]) -> Poses:
     if len(joined.time_us) < _FEWEST:
         raise InputError(joined.place, f"{len(joined.time_us)} poses", "two or more", "restore the log")
     return joined
+
+
+def _in_order(part: Poses) -> Poses:
+    """The poses sorted by time, where some stand behind later ones; how many is told."""
+    if not len(part.time_us):
+        return part
+    behind = int(np.count_nonzero(part.time_us < np.maximum.accumulate(part.time_us)))
+    if not behind:
+        return part
+    log.warning("%s: %d records stand behind later ones; all are sorted by time", part.place, behind)
+    order = np.argsort(part.time_us, kind="stable")
+    return Poses(part.time_us[order], part.position[order], part.euler_rad[order], part.place)
 
 
 def _without_repeats(part: Poses) -> Poses:
@@ -202,6 +215,8 @@ def _joined_covariances(parts: Sequence[Covariances]) -> NavigationCovariances |
         return None
     time_us = np.concatenate([part.time_us for part in filled])
     covariance = np.concatenate([part.covariance for part in filled])
+    order = np.argsort(time_us, kind="stable")
+    time_us, covariance = time_us[order], covariance[order]
     kept = _not_repeated(time_us, covariance)
     time_us, covariance = time_us[kept], covariance[kept]
     check_increasing(time_us, f"{filled[0].place}, covariances")

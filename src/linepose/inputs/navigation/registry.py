@@ -4,6 +4,7 @@ Ours stand in pyproject.toml; how another package brings one: docs/formats.md.
 """
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, Final
 
 from pydantic import BeforeValidator, Discriminator, GetJsonSchemaHandler, SerializeAsAny, Tag
@@ -14,6 +15,18 @@ from linepose.plugins import PluginGroup
 from linepose.settings import validated
 
 FORMATS: Final = PluginGroup("linepose.navigation_formats", NavigationFormat, "source.navigation.format")
+
+
+def recognised(path: Path, chosen: str | None = None) -> tuple[str | None, dict[str, Any]]:
+    """Name of the format that a log is of, and the keys that it needs beside `format` and `file`.
+
+    The name is `chosen` where one is given, and None where the log is of no format that is known.
+    """
+    for name in FORMATS.names() if chosen is None else [chosen]:
+        keys = FORMATS.member(name).recognise(path)
+        if keys is not None:
+            return name, keys
+    return chosen, {}
 
 
 class SectionsOfFormats:

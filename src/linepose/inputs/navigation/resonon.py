@@ -6,7 +6,7 @@ positive with the right wing up, the opposite of ours. The files hold no covaria
 """
 
 from pathlib import Path
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 from pydantic import Field
 
@@ -32,7 +32,11 @@ def read(section: ResononSection, folder: Path) -> NavigationRecord:
     return geodetic_record([_poses(path, section.time_scale) for path in section.paths(folder)], [], section)
 
 
-FORMAT: Final = NavigationFormat("resonon", ResononSection, read, has_covariances=False)
+def _is_location_file(path: Path) -> dict[str, Any] | None:
+    return {} if path.suffix.lower() == ".lcf" else None
+
+
+FORMAT: Final = NavigationFormat("resonon", ResononSection, read, has_covariances=False, recognise=_is_location_file)
 
 
 def _poses(path: Path, time_scale: TimeScale) -> Poses:

@@ -74,7 +74,11 @@ def read(section: RosbagSection, folder: Path) -> NavigationRecord:
     return local_record(poses, covariances) if odometry else geodetic_record(poses, covariances, section)
 
 
-FORMAT: Final = NavigationFormat("rosbag", RosbagSection, read)
+def _is_bag(path: Path) -> dict[str, Any] | None:
+    return {} if path.suffix in {".bag", ".db3", ".mcap"} or (path / "metadata.yaml").is_file() else None
+
+
+FORMAT: Final = NavigationFormat("rosbag", RosbagSection, read, recognise=_is_bag)
 
 
 @contextmanager

@@ -7,7 +7,7 @@ is 10 doubles: seconds of the week, north, east, down (m), three velocities, rol
 """
 
 from pathlib import Path
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from pydantic import Field
@@ -45,7 +45,14 @@ def read(section: SbetSection, folder: Path) -> NavigationRecord:
     return geodetic_record(poses, covariances, section)
 
 
-FORMAT: Final = NavigationFormat("sbet", SbetSection, read)
+def _is_trajectory(path: Path) -> dict[str, Any] | None:
+    """A file of whole records under a name that such trajectories have."""
+    if path.suffix.lower() not in {".sbet", ".out"} or path.stat().st_size % (8 * _TRAJECTORY):
+        return None
+    return {}
+
+
+FORMAT: Final = NavigationFormat("sbet", SbetSection, read, recognise=_is_trajectory)
 
 
 def _poses(path: Path, week: int | None) -> Poses:

@@ -1,44 +1,56 @@
-"""Navigation format `table`: CSV or Parquet, its columns named in the platform file."""
+"""Navigation format `table`: Parquet or text of any layout, its columns named in the platform file or by a preset."""
 
-import re
+import datetime
+import logging
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
+import pandas as pd
 import pyarrow as pa
-import pyarrow.compute as pc
-import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
+from scipy.spatial.transform import Rotation
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.inputs import axes, gps_time
 from linepose.inputs.local_frame import projected_frame, tangent_frame
-from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
+from linepose.inputs.navigation import presets
+from linepose.inputs.navigation.format import NavigationFormat
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
+from linepose.inputs.navigation.table_columns import Columns, Name, parts_of
+from linepose.inputs.navigation.table_times import OF_DAY, OF_TEXT, TableScale, unix_from_day, unix_from_text
+from linepose.inputs.navigation.text_file import TextSection, read_text
 from linepose.settings import Settings
 
-_BRIEFLY: Final = 120
 _PARQUET: Final = {".parquet", ".pq"}
 _ENU_SIGMAS: Final = [1, 0, 2]  # standard deviations of east, north, up in the order north, east, down
+_NOT_UNIT: Final = 1e-3
 
+Names = tuple[Name, Name, Name]
 
-Names = tuple[str, str, str]
+log = logging.getLogger(__name__)
 
 
 class ColumnsSection(Settings):
-    """Which column holds what; a file without a heading has the columns "1", "2", ..."""
+    """Which column holds what; a file without a heading has the columns "1", "2", ...
 
-    time: str = Field("time_us", description="Time, in `time_unit` and `time_scale`.")
+    A list of columns in the place of one is a value in several cells: a date and a time, or degrees, minutes, seconds.
+    """
+
+    time: Name = Field("time_us", description="Time, in `time_unit` and `time_scale`.")
     week: str | None = Field(None, description="GPS week, where the time is `gps_week` and not all is of one week.")
     position: Names = Field(
         ("north_m", "east_m", "down_m"), description="Position, in the order that `coordinates` says."
     )
-    attitude: Names = Field(("roll_rad", "pitch_rad", "yaw_rad"), description="Roll, pitch, yaw.")
+    attitude: Names | tuple[Name, Name, Name, Name] = Field(
+        ("roll_rad", "pitch_rad", "yaw_rad"), description="Roll, pitch, yaw; or a quaternion x, y, z, w."
+    )
     sigma_position: Names | None = Field(
         None, description="One standard deviation (m) north, east, down; of `coordinates: enu` east, north, up."
     )
@@ -46,22 +58,42 @@ class ColumnsSection(Settings):
         None, description="One standard deviation of roll, pitch, yaw, in `angle_unit`; both sigmas or none."
     )
 
+    def of_poses(self) -> list[Name]:
+        """The columns that a pose is made of."""
+        return [self.time, *([self.week] if self.week else []), *self.position, *self.attitude]
 
-class TableSection(GeodeticSection):
+    def of_sigmas(self) -> list[Name]:
+        """The columns of the standard deviations, if there are any."""
+        return [*(self.sigma_position or ()), *(self.sigma_attitude or ())]
+
+
+class TableSection(TextSection):
     """Keys of the format `table`."""
 
-    format: Literal["table"] = Field(description="`table`: CSV or Parquet with a column map.")
+    format: Literal["table"] = Field(description="`table`: Parquet or text, with a preset or a column map.")
+    preset: str | None = Field(
+        None,
+        description=f"Layout, columns and units of a known program, which other keys then change: {presets.NAMES}.",
+    )
     columns: ColumnsSection = Field(ColumnsSection(), description="Which column holds what.")
-    heading: bool = Field(True, description="Whether the first row of a CSV file names the columns.")
-    delimiter: str = Field(",", description="What stands between the cells of a CSV file.", min_length=1, max_length=1)
-    time_unit: Literal["s", "ms", "us", "ns"] = Field("us", description="Unit of the time, unless it is `iso`.")
-    time_scale: Literal["unix", "iso", "gps", "gps_week"] = Field(
+    time_unit: Literal["s", "ms", "us", "ns"] = Field("us", description="Unit of the time, unless it is text.")
+    time_scale: TableScale = Field(
         "unix",
         description="`unix`: UTC since 1970; `iso`: UTC as text, 2026-05-01T12:00:00.25Z; `gps`: since 1980-01-06, "
-        "leap seconds counted; `gps_week`: since the start of the GPS week.",
+        "leap seconds counted; `gps_week`: since the start of the GPS week; `gps_iso`: GPS time as text; `day`, "
+        "`gps_day`: since midnight, of UTC or GPS time.",
+    )
+    time_format: str | None = Field(
+        None, description="Layout of a time as text, where it is not ISO 8601: `%d.%m.%Y %H:%M:%S.%f`."
     )
     gps_week: int | None = Field(
         None, ge=0, description="The GPS week of the first row, for `gps_week`; if not given, that of the scans."
+    )
+    date: datetime.date | None = Field(
+        None, description="The day of the first row, for `day` and `gps_day`; if not given, that of the scans."
+    )
+    times: str | None = Field(
+        None, description="File of the rows' times, one a line, where the log has none; its column is then `time`."
     )
     coordinates: Literal["ned", "enu", "geodetic"] = Field(
         "ned",
@@ -74,7 +106,14 @@ class TableSection(GeodeticSection):
         "in east, north, up (ROS).",
     )
     angle_unit: Literal["degrees", "radians"] = Field("radians", description="Of roll, pitch, yaw and their sigmas.")
-    latitude_unit: Literal["degrees", "radians"] = Field("degrees", description="Of latitude and longitude.")
+    latitude_unit: Literal["degrees", "radians", "dms"] = Field(
+        "degrees", description="Of latitude and longitude; `dms`: degrees, minutes, seconds in one cell or three."
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_preset(cls, values: Any) -> Any:
+        return presets.overlaid(values)
 
     @model_validator(mode="after")
     def _has_both_sigmas(self) -> "TableSection":
@@ -82,10 +121,14 @@ class TableSection(GeodeticSection):
             raise ValueError("columns.sigma_position and columns.sigma_attitude, or none of them")
         return self
 
+    def files(self, folder: Path) -> set[Path]:
+        """Every file that is read."""
+        return super().files(folder) | ({folder / self.times} if self.times else set())
+
 
 def read(section: TableSection, folder: Path) -> NavigationRecord:
     """The record of the table's files; raises InputError naming a missing column or a broken row."""
-    parts = [_read_file(path, section) for path in section.paths(folder)]
+    parts = [_read_part(one, section) for one in _tables(section, folder)]
     poses, covariances = [part[0] for part in parts], [part[1] for part in parts]
     if section.coordinates == "geodetic":
         return geodetic_record(poses, covariances, section)
@@ -96,114 +139,138 @@ def read(section: TableSection, folder: Path) -> NavigationRecord:
     return record if frame is None else replace(record, crs=frame.crs, origin=frame.origin)
 
 
-FORMAT: Final = NavigationFormat("table", TableSection, read, has_covariances=False)
+FORMAT: Final = NavigationFormat("table", TableSection, read, has_covariances=False, recognise=presets.recognised)
 
 
-def _read_file(path: Path, section: TableSection) -> tuple[Poses, Covariances]:
-    table = _Table(path, section)
-    columns, time_us = section.columns, table.time_us()
-    position, angles = table.numbers(columns.position), table.numbers(columns.attitude)
-    to_rad = np.pi / 180 if section.angle_unit == "degrees" else 1.0
-    euler = angles * to_rad
-    if section.attitude_axes == "enu":
-        euler = rotations.euler_from_matrix(axes.matrix_from_enu_flu(rotations.matrix_from_euler(euler)))
-    if section.coordinates == "enu":
-        position = axes.ned_from_enu(position)
-    elif section.coordinates == "geodetic" and section.latitude_unit == "radians":
-        position = position * [180 / np.pi, 180 / np.pi, 1.0]
-    poses = Poses(time_us, position, euler, str(path))
+def _tables(section: TableSection, folder: Path) -> Iterator[Columns]:
+    """The columns of each file; with a file of times, those of all files as one."""
+    tables = (_columns(path, section) for path in section.paths(folder))
+    if section.times is None:
+        yield from tables
+        return
+    cells = pd.concat([one.cells for one in tables], ignore_index=True)
+    path = folder / section.times
+    if not path.is_file():
+        raise InputError(
+            str(path), "no such file", "the times of the rows", "restore it, or correct source.navigation.times"
+        )
+    times = path.read_text(encoding=section.encoding).split("\n")
+    times = times[:-1] if not times[-1] else times
+    if len(times) != len(cells):
+        raise InputError(str(path), f"{len(times)} times", f"{len(cells)}, one a row of the log", "restore the files")
+    yield Columns(path, cells.assign(time=times), 0)
+
+
+def _columns(path: Path, section: TableSection) -> Columns:
+    columns = section.columns
+    apart = [name for name in columns.position[:2] if isinstance(name, str)] if section.latitude_unit == "dms" else []
+    as_text = [*apart, *(part for name in _several(columns) for part in parts_of(name))]
+    if section.time_scale in OF_TEXT:
+        as_text += parts_of(columns.time)
+    if path.suffix.lower() not in _PARQUET:
+        table = read_text(path, section, as_text, apart)
+        return Columns(path, table.cells, table.first_line)
+    try:
+        return Columns(path, pq.read_table(path).to_pandas(timestamp_as_object=False), 0)
+    except (pa.ArrowException, OSError) as error:
+        raise InputError(str(path), " ".join(str(error).split()), "a Parquet file", "restore it") from None
+
+
+def _several(columns: ColumnsSection) -> list[Name]:
+    """Values in several cells, which are joined as text."""
+    return [name for name in columns.of_poses() if not isinstance(name, str)]
+
+
+def _in_three(columns: Columns, section: TableSection) -> ColumnsSection:
+    """The column map, where latitude and longitude take three cells each with those cells."""
+
+    def cells(name: Name) -> Name:
+        return tuple(f"{name} {part}" for part in "dms") if f"{name} d" in columns.cells.columns else name
+
+    latitude, longitude, height = section.columns.position
+    return section.columns.model_copy(update={"position": (cells(latitude), cells(longitude), height)})
+
+
+def _read_part(table: Columns, section: TableSection) -> tuple[Poses, Covariances]:
+    columns = _in_three(table, section)
+    table.check([*columns.of_poses(), *columns.of_sigmas()])
+    kept, place = table.filled(columns.of_poses()), str(table.path)
+    if not kept.all():
+        told = "%s: %d of %d rows have no time, position or attitude and are left out"
+        log.warning(told, place, np.count_nonzero(~kept), len(kept))
+        table = table.rows(kept)
+    time_us = _time_us(table, section, columns)
+    euler = _euler(table, section, columns)
+    position = _position(table, section, columns)
+    poses = Poses(time_us, position, euler, place)
     if columns.sigma_position is None or columns.sigma_attitude is None:
-        return poses, Covariances(time_us[:0], np.empty((0, 6, 6)), str(path))
-    sigma_position = table.numbers(columns.sigma_position)
+        return poses, Covariances(time_us[:0], np.empty((0, 6, 6)), place)
+    return poses, _covariances(table, section, columns, time_us)
+
+
+def _covariances(
+    table: Columns, section: TableSection, columns: ColumnsSection, time_us: NDArray[np.int64]
+) -> Covariances:
+    known = table.filled(columns.of_sigmas())
+    if not known.all():
+        log.warning("%s: %d rows have no standard deviations", table.path, np.count_nonzero(~known))
+        table, time_us = table.rows(known), time_us[known]
+    position, attitude = table.numbers(columns.sigma_position or ()), table.numbers(columns.sigma_attitude or ())
     if section.coordinates == "enu":
-        sigma_position = sigma_position[:, _ENU_SIGMAS]
-    sigma = np.hstack([sigma_position, table.numbers(columns.sigma_attitude) * to_rad])
-    return poses, Covariances(time_us, axes.diagonal_covariance(sigma), str(path))
+        position = position[:, _ENU_SIGMAS]
+    sigma = np.hstack([position, attitude * _to_rad(section)])
+    return Covariances(time_us, axes.diagonal_covariance(sigma), str(table.path))
 
 
-class _Table:
-    """The columns of one file; a fault is told with the file, the row and the column."""
-
-    def __init__(self, path: Path, section: TableSection) -> None:
-        self.path, self.section = path, section
-        columns = section.columns
-        triples = (columns.position, columns.attitude, columns.sigma_position, columns.sigma_attitude)
-        wanted = [columns.time, *([columns.week] if columns.week else []), *(one for t in triples if t for one in t)]
-        try:
-            if path.suffix.lower() in _PARQUET:
-                self.table = pq.read_table(path)
-            else:
-                self.table = _read_csv(path, section)
-        except (pa.ArrowException, UnicodeDecodeError, OSError) as error:
-            found = " ".join(str(error).split())
-            raise InputError(str(path), found, "Parquet, or CSV with the same cells in each row", "mend it") from None
-        missing = [name for name in wanted if name not in self.table.column_names]
-        if missing:
-            found = f"columns {', '.join(self.table.column_names)}"
-            remedy = "correct source.navigation.columns"
-            raise InputError(str(path), found, f"among them {', '.join(missing)}", remedy)
-
-    def numbers(self, names: Names) -> Floats:
-        """Columns (K, 3) as numbers."""
-        return np.stack([self._column(name, pa.float64()) for name in names], axis=-1)
-
-    def time_us(self) -> NDArray[np.int64]:
-        """The times (K,) in Unix microseconds."""
-        section, name = self.section, self.section.columns.time
-        if section.time_scale == "iso":
-            text = self._cast(name, pa.string())
-            try:
-                return np.asarray(pc.cast(text, pa.timestamp("us", "UTC")).cast(pa.int64()).to_numpy())
-            except pa.ArrowException as error:
-                found = _brief(error)
-                expected = "UTC such as 2026-05-01T12:00:00.25Z"
-                raise InputError(
-                    f"{self.path}, {name}", found, expected, "correct source.navigation.time_scale"
-                ) from None
-        whole = pa.types.is_integer(self.table[name].type)
-        times = self._column(name, pa.int64() if whole else pa.float64())
-        if section.time_scale == "gps_week":
-            return self._unix_from_week(gps_time.microseconds(times, section.time_unit))
-        since_epoch = gps_time.microseconds(times, section.time_unit)
-        return gps_time.unix_from_gps(since_epoch) if section.time_scale == "gps" else since_epoch
-
-    def _unix_from_week(self, of_week_us: NDArray[np.int64]) -> NDArray[np.int64]:
-        if self.section.columns.week:
-            week = self._column(self.section.columns.week, pa.int64())
-            return gps_time.unix_from_gps(week * gps_time.WEEK_US + of_week_us)
-        return gps_time.unix_from_week_of_first(self.section.gps_week, of_week_us, str(self.path))
-
-    def _column(self, name: str, kind: pa.DataType) -> np.ndarray:
-        return np.asarray(self._cast(name, kind).to_numpy())
-
-    def _cast(self, name: str, kind: pa.DataType) -> pa.ChunkedArray:
-        column = self.table[name]
-        if column.null_count:
-            has_heading = self.section.heading and self.path.suffix.lower() not in _PARQUET
-            row = int(pc.index(pc.is_null(column), True).as_py()) + 1 + has_heading
-            raise InputError(f"{self.path}, row {row}, {name}", "an empty cell", "a value", "remove the row")
-        try:
-            return column.cast(kind)
-        except pa.ArrowException as error:
-            what = "text" if pa.types.is_string(kind) else "whole numbers" if pa.types.is_integer(kind) else "numbers"
-            raise InputError(f"{self.path}, {name}", _brief(error), what, "mend the column") from None
+def _to_rad(section: TableSection) -> float:
+    return np.pi / 180 if section.angle_unit == "degrees" else 1.0
 
 
-def _brief(error: Exception) -> str:
-    """The value that could not be read, where pyarrow names one, else its first words."""
-    named = re.search(r"string: ('.*?') as", str(error))
-    return named.group(1) if named else " ".join(str(error).split())[:_BRIEFLY]
+def _position(table: Columns, section: TableSection, columns: ColumnsSection) -> Floats:
+    if section.coordinates == "geodetic" and section.latitude_unit == "dms":
+        latitude, longitude, height = columns.position
+        return np.stack(
+            [table.degrees(latitude), table.degrees(longitude), table.number(height).astype(float)], axis=-1
+        )
+    position = table.numbers(columns.position)
+    if section.coordinates == "enu":
+        return axes.ned_from_enu(position)
+    if section.coordinates == "geodetic" and section.latitude_unit == "radians":
+        return position * [180 / np.pi, 180 / np.pi, 1.0]
+    return position
 
 
-def _read_csv(path: Path, section: TableSection) -> pa.Table:
-    table = pa_csv.read_csv(
-        path,
-        read_options=pa_csv.ReadOptions(autogenerate_column_names=not section.heading),
-        parse_options=pa_csv.ParseOptions(delimiter=section.delimiter),
-        convert_options=pa_csv.ConvertOptions(
-            timestamp_parsers=[],
-            column_types={section.columns.time: pa.string()} if section.time_scale == "iso" else {},
-        ),
+def _euler(table: Columns, section: TableSection, columns: ColumnsSection) -> Floats:
+    """Our roll, pitch, yaw (K, 3) of three angles or of a quaternion."""
+    values = table.numbers(columns.attitude)
+    if values.shape[1] == 3 and section.attitude_axes == "ned":
+        return values * _to_rad(section)
+    if values.shape[1] == 3:
+        matrices = rotations.matrix_from_euler(values * _to_rad(section))
+    else:
+        for row in np.flatnonzero(~(np.abs(np.linalg.norm(values, axis=1) - 1) < _NOT_UNIT))[:1]:
+            found = f"quaternion {', '.join(f'{one:g}' for one in values[row])}"
+            place = table.place(row, " ".join(part for name in columns.attitude for part in parts_of(name)))
+            raise InputError(place, found, "one of length 1 in the order x, y, z, w", "correct columns.attitude")
+        matrices = Rotation.from_quat(values).as_matrix()
+    return rotations.euler_from_matrix(
+        matrices if section.attitude_axes == "ned" else axes.matrix_from_enu_flu(matrices)
     )
-    names = [str(number + 1) for number in range(table.num_columns)] if not section.heading else table.column_names
-    return table.rename_columns([name.strip() for name in names])
+
+
+def _time_us(table: Columns, section: TableSection, columns: ColumnsSection) -> NDArray[np.int64]:
+    """The times (K,) in Unix microseconds."""
+    scale, place = section.time_scale, f"{table.path}, {' '.join(parts_of(columns.time))}"
+    if scale in OF_TEXT:
+        return unix_from_text(table.text(columns.time), scale, section.time_format, place)
+    times = gps_time.microseconds(table.number(columns.time), section.time_unit)
+    if scale in OF_DAY:
+        return unix_from_day(times, section.date, scale, str(table.path))
+    if scale == "gps_week" and columns.week:
+        return gps_time.unix_from_gps(np.rint(table.number(columns.week)).astype(np.int64) * gps_time.WEEK_US + times)
+    if scale == "gps_week":
+        return gps_time.unix_from_week_of_first(section.gps_week, times, str(table.path))
+    if scale == "gps" and len(times) and 0 <= times.max() < gps_time.WEEK_US:
+        found, expected = f"times up to {times.max() / 1e6:g} s", "seconds since 1980"
+        raise InputError(place, found, expected, "set source.navigation.time_scale to gps_week")
+    return gps_time.unix_from_gps(times) if scale == "gps" else times

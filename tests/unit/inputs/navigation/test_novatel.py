@@ -127,14 +127,12 @@ def test_what_is_no_message_is_told(tmp_path, drive, caplog):
         (b"time,north\n1,2\n" * 50, "found no NovAtel message"),
         ("aligning", "found 4 INSPVA messages without an INS solution"),
         ("stdev", "found no INSPVA, expected INSPVA, INSPVAS or INSPVAX messages"),
-        ("backwards", r"record 3: found time .*, expected a time after the record before it"),
     ],
 )
 def test_log_without_poses_is_one_line(tmp_path, drive, content, told):
     made = {
         "aligning": lambda: [novatel_writer.pva("INSPVA", drive, row, False, status=1) for row in range(4)],
         "stdev": lambda: [novatel_writer.stdev(drive, row, False) for row in range(4)],
-        "backwards": lambda: [novatel_writer.pva("INSPVA", drive, row, True) for row in (0, 5, 3)],
     }
     (tmp_path / "a.gps").write_bytes(content if isinstance(content, bytes) else b"".join(made[content]()))
     with pytest.raises(InputError, match=told) as error:

@@ -97,8 +97,8 @@ def test_file_without_heading_and_with_semicolons(tmp_path):
             {},
             r"log.csv: found columns time_us, .*, expected among them yaw_rad; correct",
         ),
-        (table(yaw_rad=[1.0, np.nan, 1.0]), {}, r"log.csv, row 3, yaw_rad: found an empty cell"),
-        (table(yaw_rad=["a", "b", "c"]), {}, r"log.csv, yaw_rad: found 'c', expected numbers; mend"),
+        (table(yaw_rad=np.nan), {}, r"log.csv: found no pose, expected a log of poses"),
+        (table(yaw_rad=["a", "b", "c"]), {}, r"log.csv, row 2, yaw_rad: found 'a', expected a number; mend"),
         (
             table(yaw_rad=90.0),
             {},
@@ -117,7 +117,7 @@ def test_file_without_heading_and_with_semicolons(tmp_path):
         (
             table(time_us=["yesterday"] * 3),
             {"time_scale": "iso"},
-            r"log.csv, time_us: found 'yesterday', expected UTC such as",
+            r"log.csv, time_us: found 'yesterday', expected a date and time such as",
         ),
         (table(time_us=[1.0, 2.0, 3.0]), {"time_scale": "gps_week", "time_unit": "s"}, r"without the week.*set source"),
         (table().iloc[:1], {}, r"log.csv: found 1 poses, expected two or more"),
@@ -151,3 +151,28 @@ def test_row_that_stands_twice_is_passed_over(tmp_path, caplog, coordinates):
     np.testing.assert_array_equal(record.log.time_us, FIRST_US + 10_000 * np.arange(5))
     np.testing.assert_array_equal(record.covariances.time_us, record.log.time_us)
     assert "log.csv: 1 records that repeat the one before are passed over" in caplog.text
+
+
+def test_rows_without_a_value_are_left_out_and_counted(tmp_path, caplog):
+    values = table(time_us=FIRST_US + 10_000 * np.arange(4), yaw_rad=[0.5, np.nan, 0.5, 0.5])
+    record = read(tmp_path, values)
+    np.testing.assert_array_equal(record.log.time_us, FIRST_US + 10_000 * np.array([0, 2, 3]))
+    assert "log.csv: 1 of 4 rows have no time, position or attitude and are left out" in caplog.text
+
+
+def test_rows_out_of_order_are_sorted_and_counted(tmp_path, caplog):
+    sigmas = {"sigma_position": ("north_m", "north_m", "north_m"), "sigma_attitude": ("yaw_rad",) * 3}
+    order = np.array([0, 2, 1, 3])
+    record = read(tmp_path, table(time_us=FIRST_US + 10_000 * order, north_m=order + 1.0), columns=sigmas)
+    np.testing.assert_array_equal(record.log.time_us, FIRST_US + 10_000 * np.arange(4))
+    np.testing.assert_allclose(record.log.position_m[:, 0], [1, 2, 3, 4])
+    np.testing.assert_allclose(record.covariances.covariance[:, 0, 0], [1, 4, 9, 16])
+    assert "log.csv: 1 records stand behind later ones; all are sorted by time" in caplog.text
+
+
+def test_seconds_of_the_week_are_not_taken_for_seconds_since_1980(tmp_path):
+    values = table(time_us=GPS_S % 604_800 + np.arange(3))
+    with pytest.raises(InputError, match=r"time_us: found times up to .*set source.navigation.time_scale to gps_week"):
+        read(tmp_path, values, time_unit="s", time_scale="gps")
+    keys = {"time_unit": "s", "time_scale": "gps_week", "gps_week": int(GPS_S // 604_800)}
+    assert read(tmp_path, values, **keys).log.time_us[0] == FIRST_US

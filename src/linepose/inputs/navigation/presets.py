@@ -1,0 +1,180 @@
+"""Layouts of tables that known programs write: one entry each, with its keys and how a file of it is recognised."""
+
+import difflib
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from linepose.errors import InputError
+from linepose.settings import Settings
+
+_HEAD_CHARACTERS: Final = 20_000
+_EULER: Final = ("Roll", "Pitch", "Heading")
+_NUMBER: Final = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?"
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A layout: its name, the program for people, keys of the format `table`, and whether a file's head is of it."""
+
+    name: str
+    program: str
+    keys: Mapping[str, Any]
+    recognises: Callable[[str], bool]
+
+
+def _words(*words: str) -> Callable[[str], bool]:
+    """Whether one line of a head has all of these words."""
+    return lambda head: any(all(word in line for word in words) for line in head.splitlines())
+
+
+def _first_row(pattern: str) -> Callable[[str], bool]:
+    """Whether the first line that is no comment is of this pattern."""
+    row = re.compile(pattern)
+    return lambda head: bool(row.fullmatch(next((one for one in head.splitlines() if one.strip()[:1] not in "#"), "")))
+
+
+_GEODETIC: Final = {"coordinates": "geodetic", "angle_unit": "degrees", "time_unit": "s"}
+
+_ALL: Final = (
+    Preset(
+        "inertial_explorer",
+        "text exports of NovAtel's Inertial Explorer",
+        _GEODETIC
+        | {
+            "heading_words": ("Latitude", "Longitude", "H-Ell"),
+            "unit_rows": 1,
+            "delimiter": " ",
+            "time_scale": "gps_week",
+            "latitude_unit": "dms",
+            "columns": {
+                "time": "GPSTime",
+                "week": "Week",
+                "position": ("Latitude", "Longitude", "H-Ell"),
+                "attitude": _EULER,
+            },
+        },
+        _words("Latitude", "Longitude", "H-Ell", "Roll"),
+    ),
+    Preset(
+        "pospac",
+        "text of Applanix POSPac's export utility",
+        _GEODETIC
+        | {
+            "heading_words": ("TIME", "LATITUDE", "ROLL"),
+            "unit_rows": 1,
+            "delimiter": " ",
+            "time_scale": "gps_week",
+            "columns": {
+                "time": "TIME",
+                "position": ("LATITUDE", "LONGITUDE", "ELLIPSOID HEIGHT"),
+                "attitude": ("ROLL", "PITCH", "HEADING"),
+                "sigma_position": ("NORTH SD", "EAST SD", "HEIGHT SD"),
+                "sigma_attitude": ("ROLL SD", "PITCH SD", "HEADING SD"),
+            },
+        },
+        _words("TIME,", "LATITUDE,", "ROLL,"),
+    ),
+    Preset(
+        "hyspex",
+        "NAV text of HySpex systems: frame, longitude, latitude, height, roll, pitch, heading, seconds of the GPS week",
+        _GEODETIC
+        | {
+            "heading": False,
+            "delimiter": " ",
+            "time_scale": "gps_week",
+            "columns": {"time": "8", "position": ("3", "2", "4"), "attitude": ("5", "6", "7")},
+        },
+        _first_row(r"\s*\d+(?:\s+[-+]?\d+\.\d+){7}\s*"),
+    ),
+    Preset(
+        "headwall",
+        "imu_gps.txt of Headwall's recorders",
+        _GEODETIC
+        | {
+            "delimiter": "\t",
+            "time_unit": "us",
+            "columns": {
+                "time": "Timestamp",
+                "position": ("Lat", "Lon", "Alt"),
+                "attitude": ("Roll", "Pitch", "Yaw"),
+            },
+        },
+        _words("Roll\tPitch\tYaw\tLat\tLon\tAlt"),
+    ),
+    Preset(
+        "oxts",
+        "CSV exports of OxTS NAVsuite",
+        _GEODETIC
+        | {
+            "time_scale": "gps",
+            "columns": {
+                "time": "Time (GPS s)",
+                "position": ("Latitude (deg)", "Longitude (deg)", "Altitude (m)"),
+                "attitude": ("Roll (deg)", "Pitch (deg)", "Heading (deg)"),
+            },
+        },
+        _words("Time (GPS s)", "Latitude (deg)", "Roll (deg)"),
+    ),
+    Preset(
+        "kitti",
+        "KITTI's oxts/data/*.txt, one row a file, with their timestamps.txt",
+        {
+            "heading": False,
+            "delimiter": " ",
+            "times": "oxts/timestamps.txt",
+            "time_scale": "iso",
+            "coordinates": "geodetic",
+            "angle_unit": "radians",
+            "attitude_axes": "enu",
+            "columns": {"time": "time", "position": ("1", "2", "3"), "attitude": ("4", "5", "6")},
+        },
+        _first_row(rf"\s*{_NUMBER}(?:\s+{_NUMBER}){{29}}\s*"),
+    ),
+    Preset(
+        "tum",
+        "TUM trajectories: Unix time, x, y, z (east, north, up), quaternion x, y, z, w",
+        {
+            "heading": False,
+            "delimiter": " ",
+            "comment": "#",
+            "time_unit": "s",
+            "coordinates": "enu",
+            "attitude_axes": "enu",
+            "columns": {"time": "1", "position": ("2", "3", "4"), "attitude": ("5", "6", "7", "8")},
+        },
+        _first_row(rf"\s*\d{{9,10}}(?:\.\d*)?(?:\s+{_NUMBER}){{7}}\s*"),
+    ),
+)
+PRESETS: Final = {one.name: one for one in _ALL}
+NAMES: Final = ", ".join(f"`{name}`" for name in PRESETS)
+
+
+def overlaid(values: Any) -> Any:
+    """The keys of a table with those of its preset below them; raises InputError for a preset that is not there."""
+    if not isinstance(values, Mapping) or values.get("preset") is None:
+        return values
+    name = values["preset"]
+    if name not in PRESETS:
+        near = difflib.get_close_matches(str(name), PRESETS, n=1)
+        remedy = f"did you mean {near[0]}?" if near else "remove the key, and give the columns"
+        raise InputError("source.navigation.preset", repr(name), f"one of {', '.join(PRESETS)}", remedy)
+    below = PRESETS[name].keys
+    columns = values.get("columns", {})
+    columns = columns.model_dump(exclude_unset=True) if isinstance(columns, Settings) else columns
+    if not isinstance(columns, Mapping):
+        return {**below, **values}
+    return {**below, **values, "columns": {**below["columns"], **columns}}
+
+
+def recognised(path: Path) -> dict[str, Any] | None:
+    """The keys of the preset that a file is of; None where it is of none."""
+    try:
+        with path.open(encoding="utf-8-sig", errors="replace") as file:
+            head = file.read(_HEAD_CHARACTERS)
+    except OSError:
+        return None
+    found = next((one for one in _ALL if one.recognises(head)), None)
+    return None if found is None else {"preset": found.name}

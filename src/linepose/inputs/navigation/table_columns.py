@@ -1,0 +1,82 @@
+"""Columns of a table by their names, as numbers, angles or text; a fault is told with file, row and column."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+
+Name = str | tuple[str, ...]  # a column, or several whose cells are one value (a date and a time; degrees, minutes)
+
+_ANGLE: Final = (  # 22 18 04.3, 22:18:04.3, 22°18'04.3"N; minutes or seconds may be missing
+    r"^\s*(?P<before>[NSEWnsew]?)\s*(?P<sign>[+-]?)\s*(?P<d>\d+(?:\.\d*)?)"
+    r"(?:[^\d.+-]+(?P<m>\d+(?:\.\d*)?))?(?:[^\d.+-]+(?P<s>\d+(?:\.\d*)?))?[^\dNSEWnsew]*(?P<after>[NSEWnsew]?)\s*$"
+)
+
+
+def parts_of(name: Name) -> tuple[str, ...]:
+    """The columns of a value."""
+    return (name,) if isinstance(name, str) else name
+
+
+class Columns:
+    """The cells of one file, whose first row of values stands on this line (counted from 0)."""
+
+    def __init__(self, path: Path, cells: pd.DataFrame, first_line: int) -> None:
+        self.path, self.cells, self.first_line = path, cells, first_line
+
+    def check(self, names: Sequence[Name]) -> None:
+        """Raise InputError where one of these columns is not there."""
+        there = list(self.cells.columns)
+        missing = [part for name in names for part in parts_of(name) if part not in there]
+        if missing:
+            found = f"columns {', '.join(map(str, there))}"
+            expected = f"among them {', '.join(missing)}"
+            raise InputError(str(self.path), found, expected, "correct source.navigation.columns")
+
+    def filled(self, names: Sequence[Name]) -> np.ndarray:
+        """Which rows (K,) have a value in each of these columns."""
+        parts = [part for name in names for part in parts_of(name)]
+        return np.asarray(self.cells[parts].notna().all(axis=1).to_numpy())
+
+    def rows(self, kept: np.ndarray) -> "Columns":
+        """The rows (K,) of these; their numbers in the file are kept."""
+        return Columns(self.path, self.cells[kept], self.first_line)
+
+    def place(self, row: int, name: str) -> str:
+        """Where the value in this row (counted from 0) stands in the file."""
+        return f"{self.path}, row {int(self.cells.index[row]) + self.first_line + 1}, {name}"
+
+    def text(self, name: Name) -> pd.Series:
+        """Cells as text (K,), those of several columns with blanks between."""
+        first, *others = (self.cells[part].astype(str) for part in parts_of(name))
+        return first.str.cat(others, sep=" ") if others else first
+
+    def numbers(self, names: Sequence[Name]) -> Floats:
+        """Columns as numbers (K, N)."""
+        return np.stack([self.number(name).astype(float) for name in names], axis=-1)
+
+    def number(self, name: Name) -> np.ndarray:
+        """A column as numbers (K,); whole ones stay whole."""
+        column = self.cells[name] if isinstance(name, str) else self.text(name)
+        numbers = pd.to_numeric(column, errors="coerce")
+        for row in np.flatnonzero(numbers.isna().to_numpy() & column.notna().to_numpy())[:1]:
+            told = " ".join(parts_of(name))
+            raise InputError(self.place(row, told), repr(str(column.iloc[row])), "a number", "mend or remove the row")
+        return np.asarray(numbers.to_numpy())
+
+    def degrees(self, name: Name) -> Floats:
+        """Angles (K,) in degrees, of text with degrees, minutes and seconds; S and W count as minus."""
+        text = self.text(name)
+        parts = text.str.extract(_ANGLE)
+        for row in np.flatnonzero(parts["d"].isna().to_numpy())[:1]:
+            told = " ".join(parts_of(name))
+            expected = "degrees, minutes, seconds such as 22 18 04.3"
+            raise InputError(self.place(row, told), repr(str(text.iloc[row])), expected, "mend or remove the row")
+        values = parts[["d", "m", "s"]].astype(float).fillna(0.0).to_numpy() @ [1.0, 1 / 60, 1 / 3600]
+        below = (parts["sign"] == "-") ^ (parts["before"] + parts["after"]).str.upper().isin(["S", "W"])
+        return np.where(below.to_numpy(), -values, values)

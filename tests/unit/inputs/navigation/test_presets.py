@@ -1,0 +1,156 @@
+"""Presets of tables: a file as each program writes it, recognised and read."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from linepose.errors import InputError
+from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation.presets import NAMES, PRESETS, recognised
+from linepose.inputs.navigation.table import TableSection
+
+PAGE = (Path(__file__).parents[4] / "docs" / "formats.md").read_text()
+FIRST_US = 1_700_000_000_250_000  # 2023-11-14 22:13:20.25 UTC, week 2288, 252818.25 s
+WEEK_S = 252_818.25
+ORIGIN = (-33.8892, 151.1937, 42.5)
+
+INERTIAL_EXPLORER = """Project:     made up
+Program:     Inertial Explorer Version 8.90
+Datum:       WGS84, (processing datum)
+
+   Week    GPSTime         Latitude        Longitude        H-Ell           Roll          Pitch        Heading  Q
+(weeks)      (sec)       (+/-D M S)       (+/-D M S)          (m)          (deg)          (deg)          (deg)
+   2288  252818.25  -33 53 21.12000  151 11 37.32000       42.500   5.0000000000 -10.0000000000  30.0000000000  1
+   2288  252818.35  -33 53 21.12000  151 11 37.32000       42.500   5.0000000000 -10.0000000000  30.0000000000  1
+"""
+IN_DEGREES = INERTIAL_EXPLORER.replace("-33 53 21.12000  151 11 37.32000", "-33.8892000000 151.1937000000")
+POSPAC = """****************************************************************
+ POS Export Utility
+****************************************************************
+
+ Mission Start Time:
+   Date of Mission: 2023-11-14
+ Lever arm values: lx =        0.0000 m, ly =        0.0000 m, lz =        0.0000 m.
+ TIME, DISTANCE, EASTING, NORTHING, ELLIPSOID HEIGHT, LATITUDE, LONGITUDE, ELLIPSOID HEIGHT, ROLL, PITCH, HEADING, \
+EAST SD, NORTH SD, HEIGHT SD, ROLL SD, PITCH SD, HEADING SD
+
+  (time in Sec, distance in Meters, position in Meters, lat, long in Degrees, orientation angles and SD in Degrees)
+
+252818.250 0.0 332962.0 6248551.0 42.5 -33.8892 151.1937 42.5 5.0 -10.0 30.0 0.02 0.01 0.03 0.1 0.2 0.3
+252818.350 0.0 332962.0 6248551.0 42.5 -33.8892 151.1937 42.5 5.0 -10.0 30.0 0.02 0.01 0.03 0.1 0.2 0.3
+"""
+HYSPEX = """1  151.193700  -33.889200  42.500000  5.000000  -10.000000  30.000000  252818.250
+2  151.193700  -33.889200  42.500000  5.000000  -10.000000  30.000000  252818.350
+"""
+HEADWALL = """Roll\tPitch\tYaw\tLat\tLon\tAlt\tTimestamp\tGps_UTC_Date&Time\tStatus\tHeading
+5.0\t-10.0\t30.0\t-33.8892\t151.1937\t42.5\t1700000000250000\t2023/11/14 22:13:20\t0\t31.0
+5.0\t-10.0\t30.0\t-33.8892\t151.1937\t42.5\t1700000000350000\t2023/11/14 22:13:20\t0\t31.0
+"""
+OXTS = """Time (GPS s),Latitude (deg),Longitude (deg),Altitude (m),Heading (deg),Pitch (deg),Roll (deg)
+1384035218.25,-33.8892,151.1937,42.5,30,-10,5
+1384035218.35,-33.8892,151.1937,42.5,30,-10,5
+"""
+TUM = """# timestamp tx ty tz qx qy qz qw
+1700000000.25 20 10 5 0 0 0.5 0.8660254037844386
+1700000000.35 20 10 5 0 0 0.5 0.8660254037844386
+"""
+TEXTS = {
+    "inertial_explorer": INERTIAL_EXPLORER,
+    "pospac": POSPAC,
+    "hyspex": HYSPEX,
+    "headwall": HEADWALL,
+    "oxts": OXTS,
+    "tum": TUM,
+}
+
+
+def read(folder, text, preset, **keys):
+    (folder / "log.txt").write_text(text)
+    assert recognised(folder / "log.txt") == {"preset": preset}
+    return read_navigation(TableSection(format="table", file="log.txt", preset=preset, **keys), folder)
+
+
+@pytest.mark.parametrize(
+    ("preset", "text", "keys"),
+    [
+        ("inertial_explorer", INERTIAL_EXPLORER, {}),
+        ("inertial_explorer", IN_DEGREES, {}),
+        ("pospac", POSPAC, {"gps_week": 2288}),
+        ("hyspex", HYSPEX, {"gps_week": 2288}),
+        ("headwall", HEADWALL, {}),
+        ("oxts", OXTS, {}),
+    ],
+)
+def test_preset_of_latitude_and_longitude(tmp_path, preset, text, keys):
+    record = read(tmp_path, text, preset, origin=ORIGIN, **keys)
+    np.testing.assert_array_equal(record.log.time_us, [FIRST_US, FIRST_US + 100_000])
+    np.testing.assert_allclose(record.log.position_m, 0, atol=1e-6)
+    np.testing.assert_allclose(np.rad2deg(record.log.euler_rad), [[5, -10, 30]] * 2, atol=1e-9)
+
+
+def test_pospac_has_covariances(tmp_path):
+    record = read(tmp_path, POSPAC, "pospac", origin=ORIGIN, gps_week=2288)
+    sigma = np.sqrt(np.diag(record.covariances.covariance[0]))
+    np.testing.assert_allclose(sigma, [0.01, 0.02, 0.03, *np.deg2rad([0.1, 0.2, 0.3])])
+    columns = {"sigma_position": None, "sigma_attitude": None}
+    assert read(tmp_path, POSPAC, "pospac", gps_week=2288, columns=columns).covariances is None
+
+
+def test_tum(tmp_path):
+    record = read(tmp_path, TUM, "tum")
+    np.testing.assert_array_equal(record.log.time_us, [FIRST_US, FIRST_US + 100_000])
+    np.testing.assert_allclose(record.log.position_m[0], [10, 20, -5])
+    np.testing.assert_allclose(np.rad2deg(record.log.euler_rad[0]), [0, 0, 30], atol=1e-9)
+
+
+def test_kitti_takes_its_times_from_a_file(tmp_path):
+    """Yaw is counted from east, counter-clockwise; one row a file."""
+    folder = tmp_path / "oxts" / "data"
+    folder.mkdir(parents=True)
+    rest = " ".join(["0"] * 24)
+    for number in range(3):
+        (folder / f"{number:010d}.txt").write_text(f"-33.8892 151.1937 42.5 0.1 -0.2 {np.pi / 2} {rest}\n")
+    assert recognised(folder / "0000000000.txt") == {"preset": "kitti"}
+    section = TableSection(format="table", file="oxts/data/*.txt", preset="kitti", origin=ORIGIN)
+    (tmp_path / "oxts" / "timestamps.txt").write_text("".join(f"2023-11-14 22:13:20.{n}50000000\n" for n in (2, 3, 4)))
+    assert tmp_path / "oxts" / "timestamps.txt" in section.files(tmp_path)
+    log = read_navigation(section, tmp_path).log
+    np.testing.assert_array_equal(log.time_us, FIRST_US + 100_000 * np.arange(3))
+    np.testing.assert_allclose(log.euler_rad[0], [0.1, 0.2, 0], atol=1e-9)
+    (tmp_path / "oxts" / "timestamps.txt").write_text("2023-11-14 22:13:20.250000000\n")
+    with pytest.raises(InputError, match=r"timestamps.txt: found 1 times, expected 3, one a row of the log"):
+        read_navigation(section, tmp_path)
+
+
+def test_keys_of_the_platform_file_stand_above_those_of_the_preset(tmp_path):
+    text = INERTIAL_EXPLORER.replace("Heading", "Azimuth").replace("GPSTime", "CorrTime")
+    keys = {"columns": {"time": "CorrTime", "attitude": ("Roll", "Pitch", "Azimuth")}}
+    assert read(tmp_path, text, "inertial_explorer", **keys).log.time_us[0] == FIRST_US
+    with pytest.raises(InputError, match=r"found columns Week, CorrTime, .* expected among them GPSTime, Heading"):
+        read(tmp_path, text, "inertial_explorer")
+
+
+def test_settings_of_a_preset_are_the_same_when_they_are_read_again():
+    section = TableSection(format="table", file="log.txt", preset="pospac", columns={"time": "UTC"})
+    assert TableSection.model_validate(section.model_dump(mode="json")) == section
+
+
+def test_unknown_preset_is_one_line():
+    with pytest.raises(InputError, match=r"source.navigation.preset: found 'hispex'.*did you mean hyspex\?"):
+        TableSection(format="table", file="log.txt", preset="hispex")
+
+
+def test_file_of_each_preset_is_recognised_as_no_other(tmp_path):
+    assert {*TEXTS, "kitti"} == set(PRESETS)
+    for text in TEXTS.values():
+        (tmp_path / "log.txt").write_text(text)
+        assert sum(one.recognises(text) for one in PRESETS.values()) == 1
+    (tmp_path / "log.txt").write_text("time_us,north_m\n1,2\n")
+    assert recognised(tmp_path / "log.txt") is None
+
+
+def test_page_names_every_preset():
+    assert set(re.findall(r"^\| `(\w+)` \|", PAGE, re.MULTILINE)) >= set(PRESETS)
+    assert all(f"`{name}`" in NAMES for name in PRESETS)
