@@ -19,13 +19,14 @@ from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 class NavigationLog:
     """Body poses: time_us (K,) increasing, position_m (K, 3) north, east, down, euler_rad (K, 3) roll, pitch, yaw.
 
-    `source` names where they come from, for messages.
+    `source` names where they come from, and `gap_key` the key that decides whether a gap in them matters, for messages.
     """
 
     time_us: NDArray[np.int64]
     position_m: Floats
     euler_rad: Floats
     source: str = "navigation"
+    gap_key: str = "navigation.maximum_pose_gap_s"
 
 
 PoseAt = Callable[[NavigationLog, NDArray[np.int64]], tuple[Floats, Floats]]
@@ -80,7 +81,7 @@ def associate_poses(points: pd.DataFrame, log: NavigationLog, pose_at: PoseAt, m
             _place(log, points, worst),
             f"a gap of {gap_s[worst]:.3f} s in the navigation log around its time",
             f"at most {maximum_gap_s:g} s",
-            "complete the log, leave the observation out, or raise navigation.maximum_pose_gap_s",
+            f"complete the log, leave the observation out, or raise {log.gap_key}",
         )
     position, euler = pose_at(log, time_us)
     columns = dict(zip((*POSITION_COLUMNS, *EULER_COLUMNS), np.hstack([position, euler]).T, strict=True))

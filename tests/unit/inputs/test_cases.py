@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from linepose.inputs.labels.reading import read_point_labels
 from linepose.inputs.navigation import read_navigation
@@ -13,6 +14,7 @@ from linepose.inputs.scans.line_times import line_times_of
 from linepose.inputs.scans.scan_files import read_intensity
 from linepose.inputs.source import ScansSection
 from linepose.settings import validated
+from unit.inputs import writers
 
 CASES = Path(__file__).parent / "cases"
 
@@ -110,3 +112,33 @@ def test_table_inertial_explorer():
     np.testing.assert_allclose(first_angles(record), [-1.74, 0.44, -132.53])
     place = (22 + 18 / 60 + 4.31949 / 3600, 114 + 10 / 60 + 44.60559 / 3600, 3.472)
     np.testing.assert_allclose(record.origin, place, rtol=0, atol=1e-12)
+
+
+START_US = 1_600_000_000_000_000
+SMALL = np.eye(3) * 1e-6
+
+
+def bag(path, fix_us, quaternion):
+    """Twenty seconds of an Imu at 100 Hz, and fixes."""
+    with writers.Bag(path, 1) as written:
+        for time_us in START_US + 10_000 * np.arange(2001):
+            written.imu("/imu/data", time_us, quaternion, SMALL)
+        for time_us in fix_us:
+            written.fix("/gps/fix", time_us, (50.0, 8.0, 100.0), SMALL)
+
+
+def test_rosbag_fix_at_1_hz(tmp_path, caplog):
+    """Stamps that jitter by a millisecond."""
+    jitter_us = np.random.default_rng(1).normal(0, 1000, 21).round().astype(int)
+    bag(tmp_path / "made.bag", START_US + 1_000_000 * np.arange(21) + jitter_us, [0.0, 0.0, 0.0, 1.0])
+    record = navigation(tmp_path, format="rosbag", file="made.bag")
+    assert 1999 <= len(record.log.time_us) <= 2001
+    assert np.diff(record.log.time_us).max() == 10_000
+    assert not caplog.text
+
+
+def test_rosbag_imu_in_ned(tmp_path):
+    quaternion = Rotation.from_euler("ZYX", [40, 5, 2], degrees=True).as_quat()
+    bag(tmp_path / "made.bag", START_US + 100_000 * np.arange(201), quaternion)
+    record = navigation(tmp_path, format="rosbag", file="made.bag", attitude_axes="ned")
+    np.testing.assert_allclose(first_angles(record), [2, 5, 40], atol=1e-9)

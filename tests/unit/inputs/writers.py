@@ -126,6 +126,16 @@ class Bag:
         )
         self.write(topic, "nav_msgs/msg/Odometry", time_us, message)
 
+    def pose(self, topic, time_us, position, quaternion, covariance=None):
+        point = self.type("geometry_msgs/msg/Point")(*(float(one) for one in position))
+        turn = self.type("geometry_msgs/msg/Quaternion")(*(float(one) for one in quaternion))
+        pose, kind = self.type("geometry_msgs/msg/Pose")(point, turn), "geometry_msgs/msg/PoseStamped"
+        if covariance is not None:
+            values = np.asarray(covariance, dtype=float).ravel()
+            pose = self.type("geometry_msgs/msg/PoseWithCovariance")(pose, values)
+            kind = "geometry_msgs/msg/PoseWithCovarianceStamped"
+        self.write(topic, kind, time_us, self.type(kind)(self.header(time_us), pose))
+
     def fix(self, topic, time_us, geodetic, covariance_enu, status=0, kind=3):
         message = self.type("sensor_msgs/msg/NavSatFix")(
             self.header(time_us),

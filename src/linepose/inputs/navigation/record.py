@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final
 
@@ -55,13 +55,15 @@ class NavigationRecord:
 class Poses:
     """Poses of one file: time_us (K,), position (K, 3), euler_rad (K, 3) in north, east, down; `place` names the file.
 
-    `position` is north, east, down (m), or latitude, longitude (deg), ellipsoidal height (m).
+    `position` is north, east, down (m), or latitude, longitude (deg), ellipsoidal height (m). `gap_key` is the key by
+    which poses were left out that would fill a gap, where some were.
     """
 
     time_us: NDArray[np.int64]
     position: Floats
     euler_rad: Floats
     place: str
+    gap_key: str | None = None
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ class Covariances:
 def local_record(poses: Sequence[Poses], covariances: Sequence[Covariances]) -> NavigationRecord:
     """The record of files with positions in metres; raises InputError naming a broken record."""
     both = _joined_poses(poses)
-    log = NavigationLog(both.time_us, both.position, both.euler_rad)
+    log = _log(both, both.position, both.euler_rad)
     return NavigationRecord(log, _joined_covariances(covariances))
 
 
@@ -103,8 +105,13 @@ def geodetic_record(
         row = nearest_rows(both.time_us, at_poses.time_us)
         _, covariance = turned(at_poses.covariance, turn[row], both.euler_rad[row])
         at_poses = NavigationCovariances(at_poses.time_us, covariance, at_poses.source)
-    log = NavigationLog(both.time_us, position, euler)
+    log = _log(both, position, euler)
     return NavigationRecord(log, at_poses, frame.crs, frame.origin)
+
+
+def _log(poses: Poses, position: Floats, euler_rad: Floats) -> NavigationLog:
+    log = NavigationLog(poses.time_us, position, euler_rad)
+    return log if poses.gap_key is None else replace(log, gap_key=poses.gap_key)
 
 
 def _frame(section: GeodeticSection, first: Floats) -> LocalFrame:
@@ -142,6 +149,7 @@ def _joined_poses(parts: Sequence[Poses]) -> Poses:
         np.concatenate([part.position for part in ordered]),
         np.concatenate([part.euler_rad for part in ordered]),
         ordered[0].place,
+        next((part.gap_key for part in ordered if part.gap_key), None),
     )
     if len(joined.time_us) < _FEWEST:
         raise InputError(joined.place, f"{len(joined.time_us)} poses", "two or more", "restore the log")
@@ -157,7 +165,7 @@ def _in_order(part: Poses) -> Poses:
         return part
     log.warning("%s: %d records stand behind later ones; all are sorted by time", part.place, behind)
     order = np.argsort(part.time_us, kind="stable")
-    return Poses(part.time_us[order], part.position[order], part.euler_rad[order], part.place)
+    return replace(part, time_us=part.time_us[order], position=part.position[order], euler_rad=part.euler_rad[order])
 
 
 def _without_repeats(part: Poses) -> Poses:
@@ -166,7 +174,7 @@ def _without_repeats(part: Poses) -> Poses:
     if np.all(kept):
         return part
     log.warning("%s: %d records that repeat the one before are passed over", part.place, np.count_nonzero(~kept))
-    return Poses(part.time_us[kept], part.position[kept], part.euler_rad[kept], part.place)
+    return replace(part, time_us=part.time_us[kept], position=part.position[kept], euler_rad=part.euler_rad[kept])
 
 
 def _not_repeated(time_us: NDArray[np.int64], values: Floats) -> NDArray[np.bool_]:

@@ -1,0 +1,54 @@
+"""Messages of bags of ROS 1 (.bag) and ROS 2 (a folder, or .db3 and .mcap files), topic by topic."""
+
+import struct
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from linepose.errors import InputError
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[Any]:
+    """The bag, whatever its kind; faults of its format, also those met while reading, become one line."""
+    from rosbags.highlevel import AnyReader, AnyReaderError
+    from rosbags.rosbag1 import ReaderError as Ros1Error
+    from rosbags.rosbag2 import ReaderError as Ros2Error
+    from rosbags.typesys import Stores, get_typestore
+
+    in_folder = path.suffix in {".db3", ".mcap"} and (path.parent / "metadata.yaml").is_file()
+    try:
+        with AnyReader(
+            [path.parent if in_folder else path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)
+        ) as bag:
+            yield bag
+    except (AnyReaderError, Ros1Error, Ros2Error, struct.error, AssertionError) as error:
+        found = " ".join(str(error).split()) or type(error).__name__
+        remedy = "restore the bag, or repair its index (rosbag reindex, ros2 bag reindex)"
+        raise InputError(str(path), found, "a whole ROS 1 or ROS 2 bag", remedy) from None
+
+
+def topics_of(bag: Any, kinds: Sequence[str]) -> list[str]:
+    """The topics of messages of these kinds."""
+    return sorted({one.topic for one in bag.connections if one.msgtype in kinds})
+
+
+def messages(bag: Any, path: Path, kinds: Sequence[str], topic: str | None, key: str) -> Iterator[tuple[int, Any]]:
+    """Time (us) and content of a topic's messages, in the order of the bag; `key` is the one that names the topic.
+
+    Raises InputError where there is no such topic, or several and none is named.
+    """
+    topics, told = topics_of(bag, kinds), " or ".join(kinds)
+    if topic is None and len(topics) != 1:
+        found = f"{len(topics)} topics of {told}" + (f" ({', '.join(topics)})" if topics else "")
+        held = ", ".join(sorted({f"{one.topic} ({one.msgtype})" for one in bag.connections})) or "nothing"
+        remedy = f"set source.navigation.{key}; the bag holds {held}"
+        raise InputError(str(path), found, "one, or its name in the platform file", remedy)
+    if topic is not None and topic not in topics:
+        found, expected = f"no topic {topic} of {told}", f"one of {', '.join(topics) or 'none'}"
+        raise InputError(str(path), found, expected, f"correct source.navigation.{key}")
+    chosen = [one for one in bag.connections if one.msgtype in kinds and one.topic == (topic or topics[0])]
+    for connection, _, raw in bag.messages(connections=chosen):
+        message = bag.deserialize(raw, connection.msgtype)
+        yield message.header.stamp.sec * 1_000_000 + (message.header.stamp.nanosec + 500) // 1000, message
