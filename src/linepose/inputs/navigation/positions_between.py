@@ -41,7 +41,7 @@ def positions_between(
     in_gap = (step_us > maximum_gap_s * 1e6) & (attitude_us != fix_us[after])
     outside = beyond_us > _BEYOND_S * 1e6
     near = ~in_gap & ~outside
-    if not near.any():
+    if not near.any() or np.diff(fix_us).min() > maximum_gap_s * 1e6:
         found = f"no message between two fixes at most {maximum_gap_s:g} s apart"
         remedy = f"raise {GAP_KEY}, or check the stamps"
         raise InputError(place, found, "fixes around the attitudes", remedy)
