@@ -37,10 +37,10 @@ class ScansSection(Settings):
         "scans/*.hdr",
         description="Scans (ENVI headers, PNG, TIFF) in the order of the observations, with their time stamps beside.",
     )
-    time_stamps: Literal["csv", "resonon", "headwall"] = Field(
+    time_stamps: Literal["csv", "resonon", "headwall", "specim"] = Field(
         "csv",
         description="Time stamps of a scan's lines: NAME-times.csv (us since 1970), Resonon's NAME.times and NAME.lcf, "
-        "or Headwall's frameIndex_N.txt beside raw_N.",
+        "Headwall's frameIndex_N.txt beside raw_N, or Specim's NAME.nav.",
     )
     time_scale: Literal["unix", "gps"] | None = Field(
         None,

@@ -82,7 +82,7 @@ def test_new_asks_for_what_is_not_given_until_it_fits(here):
     assert platform.hand_measured.position_m == (0.2, 0.0, -0.8)
 
 
-@pytest.mark.parametrize("name", ["novatel", "sbet", "rosbag", "resonon"])
+@pytest.mark.parametrize("name", ["novatel", "sbet", "nmea", "rosbag", "resonon"])
 def test_new_takes_every_navigation_format(here, name):
     log = ["--source", "scans", "--navigation-format", name, "--navigation", "log/*.bin"]
     result = given("new", "mine", *GIVEN, *log)
@@ -97,6 +97,7 @@ def test_new_takes_every_navigation_format(here, name):
     [
         ("log.txt", "1 151.0 -33.0 42.0 5.0 -10.0 30.0 252818.25\n", {"format": "table", "preset": "hyspex"}),
         ("a.gps", "#INSPVAXA,COM1,0,73.5,FINESTEERING,1695,309428.0\n", {"format": "novatel"}),
+        ("scan.nav", "$GPGGA,100000.00,5000.0000,N,00800.0000,E,4,12,0.8,52.3,M,47.7,M,,\n", {"format": "nmea"}),
         ("run.bag", "", {"format": "rosbag"}),
         ("run.lcf", "", {"format": "resonon"}),
         ("sbet.out", "", {"format": "sbet"}),

@@ -1,6 +1,7 @@
 """Files of the kinds that devices and people write and that once failed: each gives its right value."""
 
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -142,3 +143,21 @@ def test_rosbag_imu_in_ned(tmp_path):
     bag(tmp_path / "made.bag", START_US + 100_000 * np.arange(201), quaternion)
     record = navigation(tmp_path, format="rosbag", file="made.bag", attitude_axes="ned")
     np.testing.assert_allclose(first_angles(record), [2, 5, 40], atol=1e-9)
+
+
+def test_specim_nav_nmea():
+    record = navigation("specim_nav_nmea", format="nmea", file="scan.nav", date="2024-05-01")
+    first_us = 1_714_557_600_020_000  # 2024-05-01 10:00:00.02 UTC
+    np.testing.assert_array_equal(record.log.time_us, first_us + 1_000_000 * np.arange(3))
+    np.testing.assert_allclose(first_angles(record), [2, 5, 40])
+    np.testing.assert_allclose(record.origin, (50.0, 8.0, 100.0))
+
+
+def test_specim_line_times(tmp_path):
+    """The header is that of the recorder's other case, with as many frames a second as the sentences say."""
+    shutil.copy(CASES / "specim_nav_nmea" / "scan.nav", tmp_path)
+    shutil.copy(CASES / "envi_specim_file_type" / "scan.raw", tmp_path)
+    header = (CASES / "envi_specim_file_type" / "scan.hdr").read_text().replace("fps = 100.00", "fps = 50.00")
+    (tmp_path / "scan.hdr").write_text(header)
+    times = line_times_of(ScansSection(kind="scans", dataset="x", time_stamps="specim"))(tmp_path / "scan.hdr", 7)
+    np.testing.assert_array_equal(times, 1_714_557_600_020_000 + 20_000 * np.arange(7))

@@ -34,6 +34,10 @@ class NavigationFormatSection(Settings):
         """Every file that is read; those of a log that is a folder one by one."""
         return with_contents(folder.glob(self.file))
 
+    def lacking(self, folder: Path) -> Literal["gps_week", "date"] | None:  # noqa: ARG002
+        """The key that the scans' first time stamp gives, where the log counts from a day that it does not say."""
+        return None
+
 
 class GeodeticSection(NavigationFormatSection):
     """Keys of the formats whose positions are latitude, longitude and ellipsoidal height (WGS 84)."""

@@ -50,15 +50,9 @@ def _with_day_of_scans(
     navigation: NavigationFormatSection, source: ScansSection, folder: Path
 ) -> NavigationFormatSection:
     """The section with the GPS week or the day of the scans' first line, where its log counts from one and has none."""
-    scale = getattr(navigation, "time_scale", "gps_week")
-    if scale == "gps_week" and getattr(navigation, "gps_week", 0) is None and not _has_weeks(navigation):
-        return navigation.model_copy(update={"gps_week": gps_time.week_at(first_time_us(source, folder))})
-    if scale in {"day", "gps_day"} and getattr(navigation, "date", 0) is None:
-        first_us = first_time_us(source, folder)
-        day = datetime.datetime.fromtimestamp(first_us / 1e6, datetime.UTC).date()
-        return navigation.model_copy(update={"date": day})
-    return navigation
-
-
-def _has_weeks(navigation: NavigationFormatSection) -> bool:
-    return getattr(getattr(navigation, "columns", None), "week", None) is not None
+    lacking = navigation.lacking(folder)
+    if lacking is None:
+        return navigation
+    first_us = first_time_us(source, folder)
+    day = datetime.datetime.fromtimestamp(first_us / 1e6, datetime.UTC).date()
+    return navigation.model_copy(update={lacking: {"gps_week": gps_time.week_at(first_us), "date": day}[lacking]})

@@ -36,6 +36,10 @@ class SbetSection(GeodeticSection):
         """Every file that is read."""
         return super().files(folder) | (with_contents(folder.glob(self.rms)) if self.rms else set())
 
+    def lacking(self, folder: Path) -> Literal["gps_week"] | None:  # noqa: ARG002
+        """The week, where it is not given."""
+        return "gps_week" if self.gps_week is None else None
+
 
 def read(section: SbetSection, folder: Path) -> NavigationRecord:
     """The record of the trajectory; raises InputError naming a file that is cut, or has another format."""

@@ -125,6 +125,12 @@ class TableSection(TextSection):
         """Every file that is read."""
         return super().files(folder) | ({folder / self.times} if self.times else set())
 
+    def lacking(self, folder: Path) -> Literal["gps_week", "date"] | None:  # noqa: ARG002
+        """The week or the day, where the time counts from it and it is not given."""
+        if self.time_scale == "gps_week" and self.gps_week is None and self.columns.week is None:
+            return "gps_week"
+        return "date" if self.time_scale in OF_DAY and self.date is None else None
+
 
 def read(section: TableSection, folder: Path) -> NavigationRecord:
     """The record of the table's files; raises InputError naming a missing column or a broken row."""

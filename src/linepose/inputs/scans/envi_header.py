@@ -76,6 +76,11 @@ def read_envi_header(path: Path) -> EnviHeader:
     return EnviHeader(**sizes, data_type=data_type, interleave=interleave, byte_order=byte_order, offset=offset)
 
 
+def header_words(path: Path) -> dict[str, str]:
+    """Every value of a header as text, by its key in lower case."""
+    return {key: entry.text for key, entry in _entries(_text(path), path).items()}
+
+
 def _text(path: Path) -> str:
     with path.open("rb") as file:
         content = file.read(_LARGEST_HEADER_BYTES + 1)

@@ -1,4 +1,4 @@
-"""Time stamps of a scan's lines: our CSV file, or what Resonon's and Headwall's recorders write beside a scan."""
+"""Time stamps of a scan's lines: our CSV file, or what the recorders of Resonon, Headwall and Specim write."""
 
 import re
 from collections.abc import Callable
@@ -14,6 +14,7 @@ from linepose.inputs.gps_time import TimeScale
 from linepose.inputs.location_files import location_rows, location_unix_us
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.scans.scan_files import LineTimes, check_line_times, read_times, times_path
+from linepose.inputs.scans.specim_times import specim_times
 from linepose.inputs.source import ScansSection
 
 Stamps = NDArray[np.int64]
@@ -88,12 +89,18 @@ def _headwall(scan: Path, scale: TimeScale) -> tuple[Stamps, Path, int]:
     return gps_time.unix_from_gps(times) if scale == "gps" else times, path, heading
 
 
+def _specim(scan: Path, scale: TimeScale) -> tuple[Stamps, Path, int]:
+    times, path = specim_times(scan)
+    return gps_time.unix_from_gps(times - gps_time.GPS_EPOCH_US) if scale == "gps" else times, path, 0
+
+
 _READERS: Final[dict[str, Callable[[Path, TimeScale], tuple[Stamps, Path, int]]]] = {
     "csv": _csv,
     "resonon": _resonon,
     "headwall": _headwall,
+    "specim": _specim,
 }
-_SCALES: Final[dict[str, TimeScale]] = {"csv": "unix", "resonon": "gps", "headwall": "unix"}
+_SCALES: Final[dict[str, TimeScale]] = {"csv": "unix", "resonon": "gps", "headwall": "unix", "specim": "unix"}
 
 
 def _names(scan: Path) -> list[str]:

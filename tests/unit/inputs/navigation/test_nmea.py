@@ -1,0 +1,126 @@
+import datetime
+from functools import reduce
+
+import numpy as np
+import pytest
+
+from linepose.errors import InputError
+from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation.nmea import NmeaSection
+from linepose.inputs.source import ScansSection
+from unit.inputs.drive import ORIGIN
+
+DAY = datetime.date(2024, 5, 1)
+MIDNIGHT_US = 1_714_521_600_000_000
+
+
+def sentence(text):
+    return f"${text}*{reduce(lambda total, one: total ^ ord(one), text, 0):02X}\r\n"
+
+
+def clock(of_day_s):
+    of_day_s = round(of_day_s, 2) % 86_400
+    return f"{int(of_day_s // 3600):02d}{int(of_day_s // 60 % 60):02d}{of_day_s % 60:05.2f}"
+
+
+def gga(of_day_s, north=0.0, quality=4):
+    """South and east; the ellipsoid is 22.5 m above the geoid here."""
+    latitude, longitude = -ORIGIN[0] - north, ORIGIN[1]
+    place = f"{int(latitude):02d}{latitude % 1 * 60:09.6f},S,{int(longitude):03d}{longitude % 1 * 60:09.6f},E"
+    return sentence(f"GNGGA,{clock(of_day_s)},{place},{quality},12,0.8,20.000,M,22.500,M,01,0000")
+
+
+def pashr(of_day_s, heading="30.00", accuracies="0.100,0.200,0.300"):
+    return sentence(f"PASHR,{clock(of_day_s)},{heading},T,+5.00,-10.00,+0.00,{accuracies},2,1")
+
+
+def rmc(of_day_s, date="010524"):
+    return sentence(f"GNRMC,{clock(of_day_s)},A,3353.352,S,15111.622,E,0.1,40.0,{date},,,A")
+
+
+def drive(start_s=36_000, n_seconds=3):
+    return [
+        gga(start_s + second) + "".join(pashr(start_s + second + tenth / 10) for tenth in range(10))
+        for second in range(n_seconds)
+    ]
+
+
+def read(tmp_path, text, **keys):
+    (tmp_path / "log.nmea").write_bytes(text.encode("latin-1"))
+    return read_navigation(NmeaSection(format="nmea", file="log.nmea", **keys), tmp_path)
+
+
+def test_drive(tmp_path, caplog):
+    record = read(tmp_path, "".join(drive()), date=DAY, origin=ORIGIN)
+    np.testing.assert_array_equal(record.log.time_us, MIDNIGHT_US + 36_000_000_000 + 100_000 * np.arange(21))
+    np.testing.assert_allclose(record.log.position_m, 0, atol=2e-3)  # a millionth of a minute is 1.9 mm
+    np.testing.assert_allclose(np.rad2deg(record.log.euler_rad), [[5, -10, 30]] * 21)
+    assert record.covariances is None
+    assert not caplog.text
+
+
+def test_covariances_of_gst_and_pashr(tmp_path):
+    gst = sentence("GNGST,100000.00,0.1,0.02,0.01,30,0.010,0.020,0.030")
+    record = read(tmp_path, gst + "".join(drive()), date=DAY, origin=ORIGIN)
+    sigma = np.sqrt(np.diag(record.covariances.covariance[0]))
+    np.testing.assert_allclose(sigma, [0.01, 0.02, 0.03, *np.deg2rad([0.1, 0.2, 0.3])], rtol=1e-6)
+    assert len(record.covariances.time_us) == 21
+
+
+def test_position_is_linear_between_fixes(tmp_path):
+    text = gga(100) + pashr(100.25) + gga(101, north=1e-4)
+    text += pashr(101)
+    record = read(tmp_path, text, date=DAY, origin=ORIGIN)
+    np.testing.assert_allclose(record.log.position_m[:, 0], np.array([0.25, 1.0]) * 11.09, atol=0.01)
+
+
+@pytest.mark.parametrize("place", [0, 2])
+def test_day_of_rmc_counts_before_the_key(tmp_path, place):
+    """Also where midnight lies between the first sentence and the one that says the day."""
+    parts = drive(86_399)
+    parts.insert(place, rmc(86_399 if place == 0 else 86_401, "010524" if place == 0 else "020524"))
+    record = read(tmp_path, "".join(parts), date=datetime.date(2020, 1, 1))
+    np.testing.assert_array_equal(record.log.time_us, MIDNIGHT_US + 86_399_000_000 + 100_000 * np.arange(21))
+
+
+def test_day_of_the_scans_where_nothing_says_it(tmp_path):
+    (tmp_path / "a-times.csv").write_text(f"{MIDNIGHT_US + 5}\n{MIDNIGHT_US + 6}\n")
+    (tmp_path / "a.png").touch()
+    (tmp_path / "log.nmea").write_text("".join(drive()))
+    navigation = {"format": "nmea", "file": "log.nmea"}
+    source = ScansSection(kind="scans", dataset="x", scans="*.png", navigation=navigation)
+    assert read_navigation(source, tmp_path).log.time_us[0] == MIDNIGHT_US + 36_000_000_000
+
+
+def test_heading_of_hdt_where_pashr_has_none(tmp_path):
+    text = "".join(drive()).replace("$PASHR", sentence("GNHDT,77.0,T") + "$PASHR")
+    assert np.rad2deg(read(tmp_path, text, date=DAY).log.euler_rad[0, 2]) == pytest.approx(30)
+    parts = [gga(100), sentence("GNHDT,77.0,T"), pashr(100, heading=""), gga(101), pashr(101, heading="")]
+    assert np.rad2deg(read(tmp_path, "".join(parts), date=DAY).log.euler_rad[0, 2]) == pytest.approx(77)
+
+
+def test_what_is_left_out_is_counted(tmp_path, caplog):
+    parts = [gga(99, quality=0), *drive(), drive()[2]]
+    parts.insert(2, "noise\xff\n" + pashr(36_001).replace("30.00", "31.00") + "$GNXYZ,1,2\n$PASHR,,\n")
+    record = read(tmp_path, "".join(parts), date=DAY)
+    assert len(record.log.time_us) == 21
+    assert "log.nmea: 1 GGA without a fix are left out" in caplog.text
+    assert "log.nmea, GGA: 1 records that repeat the one before are passed over" in caplog.text
+    assert "log.nmea, PASHR: 10 records that repeat" in caplog.text
+    assert "log.nmea: 2 lines are no whole NMEA sentence and are passed over" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("text", "keys", "told"),
+    [
+        ("a,b\n1,2\n", {"date": DAY}, r"log.nmea: found no NMEA sentence, expected lines that begin with \$"),
+        ("".join(drive()), {}, r"found no sentence with a date \(RMC, ZDA\).*; set source.navigation.date"),
+        (gga(1) + gga(2), {"date": DAY}, r"log.nmea: found no PASHR with roll, pitch and heading"),
+        (gga(1) + pashr(1), {"date": DAY}, r"log.nmea: found 1 GGA with a fix, expected two or more"),
+        (gga(1) + pashr(2) + gga(3), {"date": DAY}, r"PASHR: found no message between two fixes at most 1.5 s apart"),
+    ],
+)
+def test_broken_log_is_one_line(tmp_path, text, keys, told):
+    with pytest.raises(InputError, match=told) as error:
+        read(tmp_path, text, **keys)
+    assert "\n" not in str(error.value)
