@@ -17,12 +17,16 @@ _NUMBER: Final = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?"
 
 @dataclass(frozen=True)
 class Preset:
-    """A layout: its name, the program for people, keys of the format `table`, and whether a file's head is of it."""
+    """A layout: its name, the program for people, keys of the format `table`, and whether a file's head is of it.
+
+    Where files have no attitude, the platform file must say which columns hold one that was joined to them.
+    """
 
     name: str
     program: str
     keys: Mapping[str, Any]
     recognises: Callable[[str], bool]
+    has_attitude: bool = True
 
 
 def _words(*words: str) -> Callable[[str], bool]:
@@ -147,6 +151,20 @@ _ALL: Final = (
         },
         _first_row(rf"\s*\d{{9,10}}(?:\.\d*)?(?:\s+{_NUMBER}){{7}}\s*"),
     ),
+    Preset(
+        "rtklib",
+        "RTKLIB solutions (.pos) to which roll, pitch and heading were joined",
+        _GEODETIC
+        | {
+            "heading": False,
+            "delimiter": " ",
+            "comment": "%",
+            "time_scale": "gps_iso",
+            "columns": {"time": ("1", "2"), "position": ("3", "4", "5")},
+        },
+        _words("%", "latitude(deg)", "longitude(deg)", "height(m)"),
+        has_attitude=False,
+    ),
 )
 PRESETS: Final = {one.name: one for one in _ALL}
 NAMES: Final = ", ".join(f"`{name}`" for name in PRESETS)
@@ -166,6 +184,10 @@ def overlaid(values: Any) -> Any:
     columns = columns.model_dump(exclude_unset=True) if isinstance(columns, Settings) else columns
     if not isinstance(columns, Mapping):
         return {**below, **values}
+    if not PRESETS[name].has_attitude and "attitude" not in columns:
+        found, expected = f"{name}, whose files hold positions alone", "an attitude"
+        remedy = "join roll, pitch and heading to the rows, and name them in source.navigation.columns.attitude"
+        raise InputError("source.navigation.preset", found, expected, remedy)
     return {**below, **values, "columns": {**below["columns"], **columns}}
 
 

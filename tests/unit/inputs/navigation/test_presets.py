@@ -56,7 +56,15 @@ TUM = """# timestamp tx ty tz qx qy qz qw
 1700000000.25 20 10 5 0 0 0.5 0.8660254037844386
 1700000000.35 20 10 5 0 0 0.5 0.8660254037844386
 """
+RTKLIB = """% program   : RTKPOST ver.2.4.3
+%
+% (lat/lon/height=WGS84/ellipsoidal,Q=1:fix,2:float,3:sbas,4:dgps,5:single,6:ppp,ns=# of satellites)
+%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns
+2023/11/14 22:13:38.250  -33.889200000  151.193700000    42.5000   1   9   5.0 -10.0 30.0
+2023/11/14 22:13:38.350  -33.889200000  151.193700000    42.5000   1   9   5.0 -10.0 30.0
+"""
 TEXTS = {
+    "rtklib": RTKLIB,
     "inertial_explorer": INERTIAL_EXPLORER,
     "pospac": POSPAC,
     "hyspex": HYSPEX,
@@ -81,6 +89,7 @@ def read(folder, text, preset, **keys):
         ("hyspex", HYSPEX, {"gps_week": 2288}),
         ("headwall", HEADWALL, {}),
         ("oxts", OXTS, {}),
+        ("rtklib", RTKLIB, {"columns": {"attitude": ("8", "9", "10")}}),
     ],
 )
 def test_preset_of_latitude_and_longitude(tmp_path, preset, text, keys):
@@ -154,3 +163,9 @@ def test_file_of_each_preset_is_recognised_as_no_other(tmp_path):
 def test_page_names_every_preset():
     assert set(re.findall(r"^\| `(\w+)` \|", PAGE, re.MULTILINE)) >= set(PRESETS)
     assert all(f"`{name}`" in NAMES for name in PRESETS)
+
+
+def test_solution_without_an_attitude_is_told():
+    told = r"preset: found rtklib, whose files hold positions alone.*name them in source.navigation.columns.attitude"
+    with pytest.raises(InputError, match=told):
+        TableSection(format="table", file="log.pos", preset="rtklib")
