@@ -113,6 +113,14 @@ def test_new_recognises_a_log(here, file, text, keys):
     assert {key: getattr(navigation, key) for key in keys} == keys
 
 
+def test_new_names_no_covariances_where_the_preset_has_them(here):
+    heading = "TIME, LATITUDE, LONGITUDE, ELLIPSOID HEIGHT, ROLL, PITCH, HEADING, NORTH SD, EAST SD, HEIGHT SD"
+    (here / "a.txt").write_text(f"POS Export Utility\n {heading}, ROLL SD, PITCH SD, HEADING SD\n")
+    assert given("new", "mine", *GIVEN, "--navigation-file", "a.txt").exit_code == 0
+    source = load_platform(here / "config" / "platforms", "mine").source
+    assert (source.navigation.preset, source.covariances) == ("pospac", None)
+
+
 def test_new_tells_a_log_that_it_does_not_know(here):
     (here / "log.txt").write_text("time,x\n1,2\n")
     result = given("new", "mine", *GIVEN, "--navigation-file", "log.txt")

@@ -13,8 +13,10 @@ from linepose.inputs import gps_time
 from linepose.inputs.gps_time import TimeScale
 from linepose.inputs.location_files import location_rows, location_unix_us
 from linepose.inputs.observed_points import select_scans
-from linepose.inputs.scans.scan_files import LineTimes, check_line_times, read_times, times_path
+from linepose.inputs.scans.csv_times import read_times
+from linepose.inputs.scans.scan_files import LineTimes, times_path
 from linepose.inputs.scans.specim_times import specim_times
+from linepose.inputs.scans.time_faults import checked_line_times
 from linepose.inputs.source import ScansSection
 
 Stamps = NDArray[np.int64]
@@ -32,8 +34,7 @@ def line_times_of(source: ScansSection) -> LineTimes:
 
     def line_times(scan: Path, n_lines: int) -> Stamps:
         times, path, heading = read(scan, scale)
-        check_line_times(times, n_lines, path, heading)
-        return times
+        return checked_line_times(times, n_lines, path, heading)
 
     return line_times
 

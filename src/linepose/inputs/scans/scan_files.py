@@ -1,8 +1,7 @@
 """Scans: images of stacked scan lines with a time stamp for each line, read from ENVI, PNG or TIFF files.
 
-The time stamps of `NAME.hdr` (or .png, .tif) stand in `NAME-times.csv`: microseconds since 1970, one a row, below an
-optional heading; linepose.inputs.scans.line_times reads what devices write instead. Whatever a file claims about its
-size is checked before memory is taken for it.
+The time stamps of `NAME.hdr` (or .png, .tif) stand in `NAME-times.csv`, one a row; linepose.inputs.scans.line_times
+reads what devices write instead. Whatever a file claims about its size is checked before memory is taken for it.
 """
 
 from collections.abc import Callable
@@ -15,13 +14,12 @@ from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.inputs.number_files import check_microseconds
+from linepose.inputs.scans.csv_times import read_times
 from linepose.inputs.scans.envi_data import open_envi, spectral_mean
 from linepose.inputs.scans.pictures import picture_size, read_picture
+from linepose.inputs.scans.time_faults import checked_line_times
 
 Intensity = NDArray[np.float32]
-
-_BRIEFLY: Final = 60
 
 
 @dataclass(frozen=True)
@@ -83,43 +81,7 @@ def times_path(path: Path) -> Path:
 def read_line_times(path: Path, n_lines: int) -> NDArray[np.int64]:
     """Time stamps (n_lines,) in microseconds; raises InputError where they are too few, too many or not increasing."""
     times, heading = read_times(path)
-    check_line_times(times, n_lines, path, heading)
-    return times
-
-
-def read_times(path: Path) -> tuple[NDArray[np.int64], int]:
-    """Whole numbers, one a row, and how many rows (0 or 1) the heading takes; raises InputError for anything else."""
-    if not path.is_file():
-        raise InputError(str(path), "no such file", "the time stamp of each line", "put it beside the scan")
-    try:
-        rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
-    except UnicodeDecodeError:
-        raise InputError(str(path), "bytes that are not text", "a time stamp a row", "restore the file") from None
-    heading = int(bool(rows) and rows[0] == "time_us")
-    times = np.empty(len(rows) - heading, dtype=np.int64)
-    for index, cell in enumerate(rows[heading:]):
-        try:
-            times[index] = int(cell)
-        except (ValueError, OverflowError):
-            place, found = f"{path}, row {index + heading + 1}", repr(cell[:_BRIEFLY])
-            raise InputError(place, found, "a whole number of microseconds", "mend the row") from None
-    return times, heading
-
-
-def check_line_times(times: NDArray[np.int64], n_lines: int, path: Path, heading: int) -> None:
-    """Raise InputError where the time stamps (us) are not one a line, or not increasing.
-
-    `heading` is the number of rows above the first of them in the file.
-    """
-    if len(times) != n_lines:
-        remedy = "restore the file that is incomplete"
-        raise InputError(str(path), f"{len(times)} time stamps", f"{n_lines}, one for each line of the scan", remedy)
-    check_microseconds(times, path, first_row=heading + 1)
-    backwards = np.flatnonzero(np.diff(times) <= 0)
-    if backwards.size:
-        row = int(backwards[0]) + 1
-        place, expected = f"{path}, row {row + heading + 1}", f"a time after the line before it ({times[row - 1]})"
-        raise InputError(place, f"time {times[row]}", expected, "correct the camera's clock or remove the lines")
+    return checked_line_times(times, n_lines, path, heading)
 
 
 _READERS: Final[dict[str, Callable[[Path, int | None], Intensity]]] = {
