@@ -11,18 +11,20 @@ from typing import Final
 
 import numpy as np
 from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
 
 from linepose.arrays import Floats
 from linepose.check.conventions.mistakes import AS_GIVEN, Mistake, usual_mistakes
 from linepose.check.conventions.recording import Recording
 from linepose.errors import EstimationError, InputError
 from linepose.estimation.wide_search import whitened_residuals
-from linepose.geometry import rotations
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 
 ALIKE: Final = 3.0  # in -log: odds of 20, below which two explanations are not told apart
 CONVINCING: Final = 10.0  # in -log: odds of 22,000, above which a mistake is believed
+_FIRST_STEPS: Final = 10  # after which explanations that fit far worse than the best are left
+_FAR_WORSE: Final = 10.0  # times the least -log
 _MAXIMUM_STEPS: Final = 40
 _TOLERANCE: Final = 1e-4
 
@@ -94,17 +96,23 @@ def examine(recording_at: RecordingAt, sigmas: HandSigmas, mistakes: Sequence[Mi
     that leads outside the log or cannot be done.
     """
     as_given = explain(AS_GIVEN, recording_at, sigmas)
-    tried = [explain(mistake, recording_at, sigmas) for mistake in mistakes or usual_mistakes()]
+    begun = [explain(mistake, recording_at, sigmas, _FIRST_STEPS) for mistake in mistakes or usual_mistakes()]
+    worst = _FAR_WORSE * min(one.neg_log_posterior for one in [as_given, *begun])
+    tried = [
+        explain(one.mistake, recording_at, sigmas) if one.neg_log_posterior <= worst < np.inf else one for one in begun
+    ]
     ranked = sorted([as_given, *tried], key=lambda one: one.neg_log_posterior)
     return Examination(tuple(ranked), as_given)
 
 
-def explain(mistake: Mistake, recording_at: RecordingAt, sigmas: HandSigmas) -> Explanation:
-    """The best fit near the hand-measured pose with this mistake undone."""
+def explain(
+    mistake: Mistake, recording_at: RecordingAt, sigmas: HandSigmas, maximum_steps: int = _MAXIMUM_STEPS
+) -> Explanation:
+    """The best fit near the hand-measured pose, within so many steps, with this mistake undone."""
     try:
         recording = mistake.undo(recording_at(mistake.clock_shift_s))
         likelihood = PublishedLikelihood(recording.survey, recording.camera)
-        pose, value = _fit(likelihood, recording.pose, sigmas)
+        pose, value = _fit(likelihood, recording.pose, sigmas, maximum_steps)
         if not np.isfinite(likelihood.log_likelihood(pose)):  # residuals alone do not tell in front from behind
             raise EstimationError("a point lies behind the camera")
         error_px = float(np.nanmean(likelihood.residuals(pose).error_px))
@@ -113,17 +121,16 @@ def explain(mistake: Mistake, recording_at: RecordingAt, sigmas: HandSigmas) -> 
     return Explanation(mistake, value, error_px, pose)
 
 
-def _fit(likelihood: Likelihood, hand: Floats, sigmas: HandSigmas) -> tuple[Floats, float]:
+def _fit(likelihood: Likelihood, hand: Floats, sigmas: HandSigmas, maximum_steps: int) -> tuple[Floats, float]:
     """The best pose (6,) near the hand-measured one, and half the sum of squares there."""
     scale = np.repeat([sigmas.position_m, sigmas.angle_rad], 3)
-    rotation = rotations.matrix_from_rotation_vector(hand[3:])
+    rotation = Rotation.from_rotvec(hand[3:])
 
     def moved(step: Floats) -> Floats:
-        turn = rotations.matrix_from_rotation_vector(step[3:])
-        return np.concatenate([hand[:3] + step[:3], rotations.rotation_vector_from_matrix(turn @ rotation)])
+        return np.concatenate([hand[:3] + step[:3], (Rotation.from_rotvec(step[3:]) * rotation).as_rotvec()])
 
     def residuals(unit: Floats) -> Floats:
         return np.concatenate([whitened_residuals(likelihood, moved(unit * scale)), unit])
 
-    found = least_squares(residuals, np.zeros(len(scale)), max_nfev=_MAXIMUM_STEPS, ftol=_TOLERANCE, xtol=_TOLERANCE)
+    found = least_squares(residuals, np.zeros(len(scale)), max_nfev=maximum_steps, ftol=_TOLERANCE, xtol=_TOLERANCE)
     return moved(found.x * scale), float(found.cost)
