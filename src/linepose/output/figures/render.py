@@ -1,5 +1,6 @@
 """All figures of a platform on disk, with an index that says what each shows or why it was left out."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -11,12 +12,12 @@ from linepose.output.figures.style import save
 from linepose.pipeline.calibration import Calibration
 
 
-def render_figures(calibration: Calibration, folder: Path) -> pd.DataFrame:
-    """Draw every figure of the registry into a folder, PNG and PDF; one row a figure, drawn or left out.
+def render_figures(calibration: Calibration, folder: Path, entries: Sequence[FigureEntry] = FIGURES) -> pd.DataFrame:
+    """Draw figures, by default all of the registry, into a folder, PNG and PDF; one row a figure, drawn or left out.
 
     Columns as in `FIGURES`: where `left_out` has a sentence there is no file.
     """
-    return pd.DataFrame([_render(entry, calibration, folder) for entry in FIGURES])
+    return pd.DataFrame([_render(entry, calibration, folder) for entry in entries])
 
 
 def _render(entry: FigureEntry, calibration: Calibration, folder: Path) -> dict[str, str]:

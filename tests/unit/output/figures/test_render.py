@@ -53,10 +53,12 @@ def test_a_broken_chain_costs_its_figures_and_no_other(drawn, tmp_path):
     chain = made_up.samples()
     chain.loc[7, "theta_x_rad"] = float("nan")
     chain.to_parquet(tmp_path / "mcmc" / "inliers.parquet")
-    index = render_figures(Calibration.from_results(tmp_path, made_up.platform()), tmp_path / "figures")
-    left_out = index.set_index("figure")["left_out"]
     lost = {"corner", "rotation_axis", "platform_sketch", "trace", "autocorrelation"}
-    assert set(left_out[left_out != ""].index) == NOT_MADE | lost
+    entries = [entry for entry in FIGURES if entry.name in lost | {"outliers", "mapping"}]
+    index = render_figures(Calibration.from_results(tmp_path, made_up.platform()), tmp_path / "figures", entries)
+    left_out = index.set_index("figure")["left_out"]
+    assert {entry.name for entry in FIGURES if "mcmc/inliers" in entry.needs} == lost
+    assert set(left_out[left_out != ""].index) == lost
     assert "theta_x_rad" in left_out["corner"]
     assert not any((tmp_path / "figures" / f"{name}.png").exists() for name in lost)
 
@@ -65,9 +67,7 @@ def test_what_was_not_asked_for_is_said_and_what_is_missing_is_named(tmp_path):
     made_up.write_results(tmp_path)
     (tmp_path / "uncertainty.parquet").unlink()
     platform = made_up.platform(outline=None, experiments={"basin": None, "mapping": None, "repeatability": None})
-    index = render_figures(Calibration.from_results(tmp_path, platform), tmp_path / "figures")
-    left_out = index.set_index("figure")["left_out"]
-    for name, word in {
+    words = {
         "basin": "experiments.basin",
         "mapping": "experiments.mapping",
         "angle_error": "experiments.mapping",
@@ -75,7 +75,11 @@ def test_what_was_not_asked_for_is_said_and_what_is_missing_is_named(tmp_path):
         "platform_sketch": "outline",
         "stacked_scan": "no scans",
         "uncertainty": "no such result",
-    }.items():
+    }
+    entries = [entry for entry in FIGURES if entry.name in words]
+    index = render_figures(Calibration.from_results(tmp_path, platform), tmp_path / "figures", entries)
+    left_out = index.set_index("figure")["left_out"]
+    for name, word in words.items():
         assert word in left_out[name]
 
 
@@ -155,24 +159,27 @@ def test_pictures_have_the_stated_size(drawn):
 
 _REDRAW = """
 import sys
-from contextlib import suppress
 from pathlib import Path
+from linepose.output.figures.registry import FIGURES
 from linepose.output.figures.render import render_figures
-from linepose.pipeline.table_checks import usable_chain
 from linepose.pipeline.calibration import Calibration
 sys.path.insert(0, sys.argv[1])
 from unit import made_up
 folder = Path(sys.argv[2])
-render_figures(Calibration.from_results(folder, made_up.platform()), Path(sys.argv[3]))
+some = [entry for entry in FIGURES if entry.name in sys.argv[4:]]
+render_figures(Calibration.from_results(folder, made_up.platform()), Path(sys.argv[3]), some)
 """
+REDRAWN = ["corner", "basin", "mapping", "weights", "levels", "survey_plan", "platform_sketch"]  # one of each kind
 
 
 def test_another_process_draws_the_same_bytes(drawn, tmp_path):
     folder, _ = drawn
     environment = os.environ | {"PYTHONHASHSEED": "77", "OMP_NUM_THREADS": "1", "SOURCE_DATE_EPOCH": "1"}
     tests = Path(__file__).parents[3]
-    subprocess.run([sys.executable, "-c", _REDRAW, tests, folder, tmp_path], check=True, env=environment)
-    assert digests(tmp_path) == digests(folder / "figures")
+    subprocess.run([sys.executable, "-c", _REDRAW, tests, folder, tmp_path, *REDRAWN], check=True, env=environment)
+    redrawn, before = digests(tmp_path), digests(folder / "figures")
+    assert redrawn == {name: before[name] for name in redrawn}
+    assert {Path(name).stem for name in redrawn} == set(REDRAWN) - NOT_MADE
 
 
 def digests(folder):
