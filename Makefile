@@ -22,7 +22,7 @@ reproduce: $(STAMP) ## Run every experiment; results go to results/
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
 test: $(STAMP) ## Run the tests
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest --numprocesses $(CORES)
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest --numprocesses $(CORES) --dist loadgroup --no-loadscope-reorder
 
 check: $(STAMP) ## Style, types and the workflow's own lint
 	$(BIN)/ruff format --check .

@@ -9,7 +9,7 @@ from tiny_project import STUDY, TINY, lines_with
 
 pytestmark = pytest.mark.workflow
 BASIN = "results/tiny/basin.parquet"
-SWEEP = {"n_distances": 9, "n_angles": 8, "optimisers": ["powell", "wide"]}
+SWEEP = {"n_distances": 4, "n_angles": 4, "optimisers": ["powell", "wide"]}
 
 
 def with_batches_of(project, size):

@@ -5,7 +5,7 @@ import shutil
 
 import pandas as pd
 import pytest
-from tiny_project import ROOT, STUDY, TINY, lines_with
+from tiny_project import QUICK, ROOT, STUDY, lines_with
 
 from linepose.cli.freshness import all_outdated
 from linepose.experiments.registry import SECTIONS, compared_platforms
@@ -59,7 +59,7 @@ def test_changed_setting_is_seen_and_the_results_made_again_without_snakemakes_r
     shutil.rmtree(copied.folder / ".snakemake")
     assert lines_with("outdated", copied.linepose("show", "tiny").stderr) == []
     before = pd.read_parquet(copied.folder / POSE)
-    copied.configure(STUDY, {"tiny": TINY | {"camera": {"focal_length_m": 0.009}}})
+    copied.configure(STUDY, {"tiny": QUICK | {"camera": {"focal_length_m": 0.009}}})
     for command in (["show", "tiny"], ["export", "tiny", "--format", "json"]):
         done = copied.linepose(*command)
         (line,) = lines_with("outdated", done.stderr)

@@ -7,9 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from tiny_project import STUDY, TINY, Project
-
-QUICK = TINY | {"experiments": dict.fromkeys(["basin", "mapping", "repeatability", "sensitivity"], None)}
+from tiny_project import QUICK, STUDY, TINY
 
 
 def linepose(folder: Path, *arguments: str) -> str:
@@ -29,18 +27,15 @@ def digests(folder: Path) -> dict[str, str]:
 
 
 @pytest.mark.workflow
-def test_each_platform_keeps_its_page_and_its_numbers(tmp_path):
-    project = Project(tmp_path)
-    names = ("first", "second")
-    project.configure(STUDY | {"platforms": list(names)}, dict.fromkeys(names, QUICK))
-    results = tmp_path / "results"
-    linepose(tmp_path, "run", "first", "--cores", "2")
-    before, shown = digests(results / "first"), linepose(tmp_path, "show", "first")
-    linepose(tmp_path, "run", "second", "--cores", "2")
-    assert digests(results / "first") == before
-    assert linepose(tmp_path, "show", "first") == shown
-    assert str(results / "first" / "report.html") in shown
-    assert "Camera calibration of first" in (results / "first" / "report.html").read_text()
-    assert "second" not in (results / "first" / "report.html").read_text()
+def test_each_platform_keeps_its_page_and_its_numbers(copied):
+    folder, results = copied.folder, copied.folder / "results"
+    copied.configure(STUDY | {"platforms": ["tiny", "second"]}, {"tiny": TINY, "second": QUICK})
+    before, shown = digests(results / "tiny"), linepose(folder, "show", "tiny")
+    linepose(folder, "run", "second", "--cores", "2")
+    assert digests(results / "tiny") == before
+    assert linepose(folder, "show", "tiny") == shown
+    assert str(results / "tiny" / "report.html") in shown
+    assert "Camera calibration of tiny" in (results / "tiny" / "report.html").read_text()
+    assert "second" not in (results / "tiny" / "report.html").read_text()
     study = (results / "report.html").read_text()
-    assert all(f'href="{name}/report.html"' in study for name in names)
+    assert all(f'href="{name}/report.html"' in study for name in ("tiny", "second"))

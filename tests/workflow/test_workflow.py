@@ -4,7 +4,7 @@ import shutil
 import numpy as np
 import pandas as pd
 import pytest
-from tiny_project import STUDY, TINY, Project, lines_with
+from tiny_project import QUICK, STUDY, TINY, Project, lines_with
 
 from linepose.geometry.pose import POSE_COLUMNS
 
@@ -95,7 +95,7 @@ def test_wrong_configuration_is_one_line_and_spares_the_results(copied, study, p
 def recorded(project, name, **source):
     """The simulated survey as a platform of the user's own, with its files in a data folder."""
     shutil.copytree(project.folder / "results" / "tiny" / "simulated", project.folder / "data" / name)
-    return TINY | {"simulation": None, "source": {"kind": "scans", "dataset": name, **source}}
+    return QUICK | {"simulation": None, "source": {"kind": "scans", "dataset": name, **source}}
 
 
 def truncate_scan(folder):

@@ -11,6 +11,8 @@ from typing import Any
 
 import yaml
 
+from linepose.experiments.registry import SECTIONS
+
 ROOT = Path(__file__).parents[2]
 STUDY = {
     "platforms": ["tiny"],
@@ -40,6 +42,7 @@ TINY = {
         "image": {"supersampling": 2, "margin_share": 0.4},
     },
 }
+QUICK = TINY | {"experiments": dict.fromkeys(SECTIONS)}  # without any experiment
 
 
 @dataclass(frozen=True)

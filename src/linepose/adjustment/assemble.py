@@ -153,10 +153,17 @@ def _diagnostics(
         n_rounds=found.n_rounds,
         n_passes=found.n_passes,
         chi_squared=fit.chi_squared,
-        degrees_of_freedom=2 * len(measurements.u_px) - 3 * measurements.n_points - N_POSE,
+        degrees_of_freedom=_degrees_of_freedom(measurements, knowledge),
         heavy_tails=bool(np.any(fit.weights.of_view != 1) or np.any(fit.weights.of_measurement != 1)),
         warnings=warnings_of(quality),
     )
+
+
+def _degrees_of_freedom(measurements: Measurements, knowledge: Knowledge) -> int:
+    """Equations less unknowns; a parameter of which something is known beforehand has an equation of its own."""
+    unknown = 3 * measurements.n_points + (0 if knowledge.hand is not None else N_POSE)
+    known = int(np.linalg.matrix_rank(measurements.known.information).sum())
+    return 2 * len(measurements.u_px) - unknown + known
 
 
 def _beside_hand(hand: HandMeasuredPrior, state: State, covariance: Floats) -> tuple[Floats, tuple[str, ...]]:

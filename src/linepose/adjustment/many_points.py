@@ -22,11 +22,11 @@ from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_CAMERA, N_POSE
 from linepose.adjustment.posterior import Mixture
 from linepose.adjustment.process import Weights, components, corrections, error_image
+from linepose.adjustment.start import behind_at_start
 from linepose.adjustment.state import Knowledge, State, camera_step
 from linepose.adjustment.tails import DEGREES_OF_FREEDOM, MEASUREMENT_DIMENSION
 from linepose.adjustment.whitening import factorise, unwhiten, whiten_residual
 from linepose.arrays import Floats
-from linepose.errors import EstimationError
 from linepose.survey.observations import Survey
 
 MANY_POINTS: Final = 150  # above which the normal equations are not formed as a matrix
@@ -102,9 +102,7 @@ def solve_many(
             state.optics(knowledge.camera),
             linearised,
         ):
-            raise EstimationError(
-                "adjustment: a point lies behind the camera; start from a pose nearer to the camera's"
-            )
+            raise behind_at_start(measurements, state.pose, state.points_m)
         process = components(structure, error_image(structure, linearised), levels, weights)
         factor = factorise(process, structure.view_of, structure.begins)
         system = equations(linearised, measurements.point, factor, knowledge.prior(state, measurements))

@@ -53,6 +53,11 @@ class Diagnostics(Quality):
     heavy_tails: bool
     warnings: tuple[str, ...]
 
+    @property
+    def reduced_chi_squared(self) -> float:
+        """Chi squared over its degrees of freedom, of which it has at least one."""
+        return self.chi_squared / max(self.degrees_of_freedom, 1)
+
 
 @dataclass(frozen=True)
 class Adjustment:

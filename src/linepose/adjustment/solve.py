@@ -18,6 +18,7 @@ from linepose.adjustment.linearise import Linearised, empty_linearised, linearis
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_CAMERA, N_POSE, Pass, Prior, design, one_pass, solve_step, whitened_residual
 from linepose.adjustment.process import Components, ErrorImage, Weights, components, corrections, error_image
+from linepose.adjustment.start import behind_at_start
 from linepose.adjustment.state import Knowledge, State
 from linepose.adjustment.whitening import unwhiten
 from linepose.arrays import Floats
@@ -116,9 +117,7 @@ def solve(
     """
     model = model_at(measurements, knowledge, start)
     if model is None:
-        raise EstimationError(
-            "adjustment: a point lies behind the camera at the start; start from a pose nearer to the camera's"
-        )
+        raise behind_at_start(measurements, start.pose, start.points_m)
     process, done = pass_at(measurements, model, levels, weights)
     floor, steps, converged = damping, 0, False
     structure = measurements.structure

@@ -127,7 +127,7 @@ def _optima(survey: Survey, found: Adjustment) -> pd.DataFrame:
         **dict(zip(LAPLACE_SIGMA_COLUMNS, found.sigma, strict=True)),
         **_objective(found),
         "start_neg_log_likelihood": np.nan,
-        "reduced_chi_square": told.chi_squared / told.degrees_of_freedom,
+        "reduced_chi_square": told.reduced_chi_squared,
         "degrees_of_freedom": told.degrees_of_freedom,
         "converged": told.converged,
     }
@@ -156,7 +156,7 @@ def _diagnostics(survey: Survey, found: Adjustment) -> pd.DataFrame:
             "sampled_sigma": poses.std(axis=0, ddof=1),
             "laplace_sigma": found.sigma,
             "neg_log_likelihood": 0.5 * told.chi_squared,
-            "reduced_chi_square": told.chi_squared / told.degrees_of_freedom,
+            "reduced_chi_square": told.reduced_chi_squared,
             "pareto_shape": told.pareto_shape,
             "least_eigenvalue": told.least_eigenvalue,
             "disagreement_sigmas": told.disagreement_sigmas,

@@ -25,6 +25,7 @@ def observations_from_arrays(
     position_m: ArrayLike,
     euler_rad: ArrayLike,
     covariance: ArrayLike,
+    time_us: ArrayLike | None = None,
 ) -> pd.DataFrame:
     """The table of observations, from arrays with one row for each of K measurements.
 
@@ -42,6 +43,8 @@ def observations_from_arrays(
         The body's roll, pitch, yaw then, zyx intrinsic (rad).
     covariance : array_like, shape (6, 6) or (K, 6, 6)
         Of north, east, down, roll, pitch, yaw (m, rad).
+    time_us : array_like, shape (K,), optional
+        When each point was recorded (us); without it, drift of the navigation cannot be told from other errors.
 
     Returns
     -------
@@ -83,7 +86,7 @@ def observations_from_arrays(
     columns: dict[str, Floats | np.ndarray] = {
         "observation": _whole("observation", observation, count),
         "point": _whole("point", point, count),
-        "time_us": np.zeros(count, dtype=np.int64),
+        "time_us": _whole("time_us", np.zeros(count) if time_us is None else time_us, count, "give microseconds"),
         "u_px": _shaped("u_px", pixels, (count,)),
     }
     columns |= dict(zip(POSITION_COLUMNS, position.T, strict=True))
@@ -108,17 +111,24 @@ def _shaped(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Floats:
     return array
 
 
-def _whole(name: str, values: ArrayLike, count: int) -> np.ndarray:
+def _whole(name: str, values: ArrayLike, count: int, remedy: str = "number views and points") -> np.ndarray:
     array = _shaped(name, values, (count,))
-    wrong = np.flatnonzero((array != np.rint(array)) | (array < 0))
+    wrong = np.flatnonzero((array != np.rint(array)) | (array < 0) | (array >= 2.0**63))
     if wrong.size:
         row = int(wrong[0])
-        raise InputError(f"{name}, row {row}", f"{array[row]:g}", "a whole number", "number views and points")
-    return array.astype(np.int64)
+        raise InputError(f"{name}, row {row}", f"{array[row]:g}", "a whole number, not negative", remedy)
+    return np.asarray(values).astype(np.int64)
 
 
 def _check_covariances(matrices: Floats) -> None:
     scale = np.sqrt(np.abs(np.diagonal(matrices, axis1=1, axis2=2)))
+    for row in np.flatnonzero(~np.any(scale > 0, axis=1))[:1]:
+        raise InputError(
+            f"covariance, row {row}",
+            "zero",
+            "a covariance of north, east, down (m), roll, pitch, yaw (rad)",
+            "give what the navigation system reports, or its data sheet",
+        )
     outer = np.where(scale > 0, scale, 1.0)[:, :, None] * np.where(scale > 0, scale, 1.0)[:, None, :]
     correlation = matrices / outer
     skewed = np.abs(correlation - np.swapaxes(correlation, 1, 2)).max(axis=(1, 2)) > 1e-9

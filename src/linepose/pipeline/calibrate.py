@@ -121,7 +121,7 @@ def calibrate(
     ((6,), (4, 4))
     """
     settings = settings or CalibrationSettings()
-    observations = _checked(observations)
+    observations = _checked(observations, camera.n_pixels)
     survey = survey_from_table(observations)
     check_determined(survey, N_PARAMETERS)
     make = _removed_and_sampled if noise_model(settings.noise_model).removes_outliers else _adjusted
@@ -165,7 +165,7 @@ def _removed_and_sampled(
     }
 
 
-def _checked(observations: pd.DataFrame) -> pd.DataFrame:
+def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
     """The observations with the columns that may be left out; raises InputError."""
     missing = [name for name in _NEEDED if name not in observations.columns]
     if missing:
@@ -177,6 +177,14 @@ def _checked(observations: pd.DataFrame) -> pd.DataFrame:
         )
     if observations.empty:
         raise InputError("observations", "no row", "one row a point seen", "add observations")
+    off_line = np.flatnonzero(~observations["u_px"].between(-1.0, float(n_pixels)))
+    if off_line.size:
+        raise InputError(
+            f"observations, row {off_line[0]}",
+            f"u_px {observations['u_px'].iloc[off_line[0]]:g}",
+            f"a pixel of the scan line, 0 to {n_pixels - 1}",
+            "correct u_px, or n_pixels of the camera",
+        )
     if "time_us" not in observations.columns:
         observations = observations.assign(time_us=np.zeros(len(observations), dtype=np.int64))
     return observations if "nav_gap_s" in observations.columns else observations.assign(nav_gap_s=0.0)

@@ -30,6 +30,7 @@ POINT_FIELDS: Final = [
     *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS),
 ]
 OBSERVATIONS: Final = pa.schema([*POINT_FIELDS, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
+_LARGEST_GRID: Final = 2_000_000  # observations times points, of 450 bytes each
 _RAYS_PER_POINT: Final = 2
 
 
@@ -87,11 +88,19 @@ class Survey:
 def survey_from_table(table: pd.DataFrame) -> Survey:
     """The survey that a table like results/NAME/observations.parquet holds, one row an observed point.
 
-    The origin is the mean position rounded to whole metres.
+    The origin is the mean position rounded to whole metres. Raises InputError for numbers of points that no array can
+    have as its columns.
     """
     numbers = np.sort(table["observation"].unique()).astype(np.int64)
-    points = np.arange(int(table["point"].max()) + 1)
-    shape = (len(numbers), len(points))
+    shape = (len(numbers), int(table["point"].max()) + 1)
+    if shape[0] * shape[1] > _LARGEST_GRID:
+        row, different = int(table["point"].argmax()), table["point"].nunique()
+        raise InputError(
+            f"observations, row {row}",
+            f"point {table['point'].iloc[row]}",
+            f"numbers from 0: there are {different} different points",
+            "correct the number, or number the points 0, 1, 2, ...",
+        )
     row = np.searchsorted(numbers, table["observation"].to_numpy())
     column = table["point"].to_numpy().astype(int)
     origin = np.round(table[list(POSITION_COLUMNS)].to_numpy().mean(axis=0))

@@ -230,6 +230,21 @@ def test_a_camera_that_looks_the_other_way(survey):
     with pytest.raises(EstimationError, match="behind the camera") as raised:
         adjust(survey, CAMERA, np.concatenate([timed_survey.POSE[:3], away]), settings=QUICK)
     assert "\n" not in str(raised.value)
+    assert "in 12 of 12 observations (1, 2, 3, 4, 5, ...); correct the hand-measured pose" in str(raised.value)
+
+
+def test_an_observation_that_is_far_off_is_named(survey):
+    position = survey.position_m.copy()
+    position[3] += 10.0
+    with pytest.raises(EstimationError, match=r"in 1 of 12 observations \(4\); leave these out"):
+        adjust(replace(survey, position_m=position), CAMERA, hand(), settings=QUICK)
+
+
+def test_two_observations_are_judged_with_the_hand_measurement_as_equations(survey):
+    found = adjust(survey.select([1, 2]), CAMERA, hand(0.02), settings=QUICK)
+    n_points = survey.u_px.shape[1]
+    assert found.diagnostics.degrees_of_freedom == 2 * 2 * n_points - 3 * n_points
+    assert np.isfinite(found.diagnostics.reduced_chi_squared)
 
 
 def test_line_period_from_time_stamps():

@@ -164,11 +164,34 @@ def test_bad_observation_is_removed(simulated, arrays):
         ("point", lambda a: a * 0, "point 0 of observation 1 again"),
         ("covariance", lambda a: a + np.eye(6, k=1), "covariance, row 0.*not symmetric"),
         ("covariance", lambda a: -a, "covariance, row 0.*negative"),
+        ("covariance", lambda a: 0 * a, "covariance, row 0: found zero"),
+        ("time_us", lambda a: a + 0.5, "time_us, row 0.*give microseconds"),
     ],
 )
 def test_wrong_array_is_named(arrays, name, change, told):
+    given = arrays | {"time_us": np.arange(len(arrays["point"]))}
     with pytest.raises(linepose.InputError, match=told):
-        linepose.observations_from_arrays(**(arrays | {name: change(np.asarray(arrays[name], dtype=float))}))
+        linepose.observations_from_arrays(**(given | {name: change(np.asarray(given[name], dtype=float))}))
+
+
+def test_times_are_kept_to_the_microsecond(arrays):
+    time_us = 1_700_000_000_000_001 + np.arange(len(arrays["point"]))
+    made = linepose.observations_from_arrays(**arrays, time_us=time_us)
+    assert sorted(made["time_us"]) == time_us.tolist()
+
+
+@pytest.mark.parametrize(
+    ("name", "row", "value", "told"),
+    [
+        ("u_px", 7, 9000.0, "observations, row 7: found u_px 9000, expected a pixel of the scan line, 0 to 647"),
+        ("point", 3, 10**12, "observations, row .*: found point 1000000000000, .* 16 different points"),
+    ],
+)
+def test_measurement_that_no_camera_or_pattern_has_is_named(simulated, arrays, name, row, value, told):
+    observations = linepose.observations_from_arrays(**arrays)
+    observations.loc[row, name] = value
+    with pytest.raises(linepose.InputError, match=told):
+        linepose.calibrate(observations, simulated.intrinsics(), BY_HAND)
 
 
 def test_table_without_a_column_says_how_it_is_made(simulated):
