@@ -8,7 +8,7 @@ import pandas as pd
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.paper.number import Number, Published, Results, numbers
 
-SWEEP: Final = "powell"  # the search that section 4.7 describes
+_SWEEP: Final = "powell"  # the search that section 4.7 describes
 
 
 def subset_numbers(
@@ -22,7 +22,7 @@ def subset_numbers(
 def basin_numbers(name: str, published: Published, results: Results) -> list[Number]:
     """Section 4.7: the share of the starts inside the triangle that find the optimum, and outside."""
     summary = results["basin_summary"]
-    rates = summary[summary["optimiser"] == SWEEP].set_index("region")["success_rate"]
+    rates = summary[summary["optimiser"] == _SWEEP].set_index("region")["success_rate"]
     beyond = published["section4"]["basin"]["beyond_success_rate"]
     return [
         Number(f"{name}, section 4.7, success inside", 1.0, rates["inside"]),

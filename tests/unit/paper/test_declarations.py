@@ -1,8 +1,6 @@
 """The declaration file is closed, and says of every number what it is held to."""
 
-import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from linepose.errors import InputError
 from linepose.paper.declarations import load_declarations
@@ -64,17 +62,3 @@ def test_no_declaration_is_idle():
         for pattern in group.quantities:
             one = group.model_copy(update={"quantities": [pattern]})
             assert any(one.holds_for(quantity) for quantity in quantities), pattern
-
-
-def test_sigmas_that_table_3_misprints_are_declared_as_differences_of_the_angles_of_table_1_give_them():
-    angles, step = np.deg2rad(PUBLISHED["table1"]["shrimp"]["euler_deg"]), 1e-6
-
-    def rotation_vector(euler):
-        return Rotation.from_euler("ZYX", euler[::-1]).as_rotvec()
-
-    moves = step * np.eye(3)
-    columns = [(rotation_vector(angles + move) - rotation_vector(angles - move)) / (2 * step) for move in moves]
-    sigma = np.deg2rad(2.0) * np.linalg.norm(columns, axis=0)
-    for axis, value in zip("xyz", sigma, strict=True):
-        declared, _ = DECLARED.expected[f"shrimp, Table 3, hand_measured, sigma_theta_{axis}_rad"]
-        assert declared.expected == pytest.approx(value, abs=0.5 * declared.tolerance)
