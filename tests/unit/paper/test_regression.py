@@ -102,19 +102,22 @@ def test_every_number_fails_beyond_its_tolerance_either_way(index):
         check_passed(table)
 
 
-NO_ERROR_IS_EXPECTED_TOO = {  # the published error of nothing lies in the declared interval
-    f"{platform}, error against truth in sigmas, {parameter}"
-    for platform in ("ladybird-sim", "shrimp-sim")
-    for parameter in ("r_x_m", "r_y_m", "r_z_m", "theta_x_rad", "theta_y_rad", "theta_z_rad")
+PUBLISHED_IS_EXPECTED_TOO = {  # the published number lies in the declared interval, as an error of nothing does
+    "ladybird, section 4.7, success outside",
+    *(
+        f"{platform}, error against truth in sigmas, {parameter}"
+        for platform in ("ladybird-sim", "shrimp-sim")
+        for parameter in ("r_x_m", "r_y_m", "r_z_m", "theta_x_rad", "theta_y_rad", "theta_z_rad")
+    ),
 }
 
 
 def test_a_deviation_that_is_reproduced_after_all_fails():
-    """Unless the published number lies in the declared interval, as an error of nothing does."""
+    """Unless the published number lies in the declared interval."""
     for name in DECLARED.expected:
         (number,) = (one for one in NUMBERS if one.quantity == name)
         reproduced = number._replace(obtained=number.published)
-        fails = [] if name in NO_ERROR_IS_EXPECTED_TOO else [name]
+        fails = [] if name in PUBLISHED_IS_EXPECTED_TOO else [name]
         assert failed(regression_table([reproduced], _only(name))) == fails
 
 
@@ -220,7 +223,7 @@ def test_sigmas_of_subsets_may_differ_by_15_per_cent(share, n_failed):
 
 @pytest.mark.parametrize(
     ("inside", "outside", "n_failed"),
-    [(1.0, 0.48, 0), (36 / 37, 0.72, 0), (35 / 37, 0.6, 1), (1.0, 0.47, 1), (0.9, 0.73, 2)],
+    [(1.0, 0.57, 0), (36 / 37, 0.73, 0), (35 / 37, 0.6, 1), (1.0, 0.56, 1), (0.9, 0.74, 2)],
 )
 def test_basin_claims(inside, outside, n_failed):
     def spoil(table):
@@ -229,7 +232,7 @@ def test_basin_claims(inside, outside, n_failed):
     assert len(changed("ladybird", "basin_summary", spoil)) == n_failed
 
 
-@pytest.mark.parametrize("outside", [0.95, 0.99, 0.6])
+@pytest.mark.parametrize("outside", [0.93, 1.0, 0.6])
 def test_a_basin_other_than_declared_fails(outside):
     def spoil(table):
         table["success_rate"] = [1.0, outside, 0.0, 0.0]
@@ -250,7 +253,7 @@ def test_failure_names_each_row():
     assert str(error.value) == (
         f"2 of {len(table)} published numbers are not reproduced: ladybird, notebook, neg_log_likelihood: "
         "published 51.5747, obtained 51.5802, tolerance 0.00052; shrimp-sim, section 4.7, success outside: "
-        "published 0.6, obtained 0.6, declared to be 0.97 instead, tolerance 0.015"
+        "published 0.6, obtained 0.6, declared to be 0.969 instead, tolerance 0.03"
     )
 
 
