@@ -74,7 +74,7 @@ def names_of(platforms):
     return "|".join(platforms) or "[^\\s\\S]"
 
 
-TOLD = set()  # folders whose losses were told of
+WARNED = set()  # of these folders' losses, once a run
 
 
 def remade_if_lost(folder):
@@ -89,8 +89,8 @@ def remade_if_lost(folder):
         lost = lost_files(Path(name), Path(f"{name}_files.txt"))
         if lost and workflow.is_main_process and workflow.dag is not None:
             workflow.dag.forcefiles.add(f"{name}_files.txt")
-            if name not in TOLD:
-                TOLD.add(name)
+            if name not in WARNED:
+                WARNED.add(name)
                 logger.warning(
                     f"linepose: {name}: {', '.join(lost)} lost; the folder is made again"
                 )

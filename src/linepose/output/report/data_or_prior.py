@@ -23,7 +23,7 @@ _WITHOUT: Final = (
 _OTHERS: Final = " Levels and intrinsics always have a prior, which is the noise model's and the camera's."
 
 
-def decided_section(calibration: Calibration) -> SectionOnPage | None:
+def prior_weight_section(calibration: Calibration) -> SectionOnPage | None:
     """The section; None where the result was not made."""
     if not calibration.results.has("prior"):
         return None

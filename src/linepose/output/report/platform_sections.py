@@ -6,14 +6,14 @@ from typing import Final
 from linepose.output.adjusted import is_adjusted
 from linepose.output.report.adjustment import adjustment_section
 from linepose.output.report.clocks import clocks_section
-from linepose.output.report.data_or_prior import decided_section
+from linepose.output.report.data_or_prior import prior_weight_section
 from linepose.output.report.sections import SectionOnPage
-from linepose.output.report.sensitivity import dependence_section
+from linepose.output.report.sensitivity import influence_section
 from linepose.pipeline.calibration import Calibration
 
 _SECTIONS: Final[tuple[Callable[[Calibration], SectionOnPage | None], ...]] = (
-    decided_section,
-    dependence_section,
+    prior_weight_section,
+    influence_section,
     clocks_section,
 )
 

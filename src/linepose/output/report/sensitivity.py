@@ -15,7 +15,7 @@ from linepose.pipeline.calibration import Calibration
 _HEADS = ("Change", "Observations", "Forward (mm)", "Right (mm)", "Down (mm)", "Turn (°)", "Together (sigmas)")
 
 
-def dependence_section(calibration: Calibration) -> SectionOnPage | None:
+def influence_section(calibration: Calibration) -> SectionOnPage | None:
     """What the experiments on settings and on the choice of observations found, as far as they were run."""
     pose = calibration.pose_of("inliers")
     tables: list[TableOnPage] = []

@@ -6,7 +6,7 @@ import pytest
 from linepose.experiments.clock_offset import CLOCK_OFFSET
 from linepose.experiments.prior import PRIOR_TABLE
 from linepose.output.report.clocks import clocks_section
-from linepose.output.report.data_or_prior import decided_section
+from linepose.output.report.data_or_prior import prior_weight_section
 from linepose.pipeline.calibration import Calibration
 from linepose.tables import write_table
 from unit import made_up
@@ -19,7 +19,7 @@ def results_with(folder, **tables):
 
 
 def test_who_decided_stands_in_a_table(tmp_path):
-    section = decided_section(results_with(tmp_path, prior=(made_up.prior(), PRIOR_TABLE)))
+    section = prior_weight_section(results_with(tmp_path, prior=(made_up.prior(), PRIOR_TABLE)))
     (table,) = section.tables
     assert table.sentence == "5 decided by data, 1 decided by data and prior."
     assert table.rows[2] == ["r_z (m)", "0.0100", "0.0600", "0.1000", "0.50", "data and prior"]
@@ -30,7 +30,7 @@ def test_who_decided_stands_in_a_table(tmp_path):
 
 def test_without_a_prior_the_page_says_what_it_would_add(tmp_path):
     table = made_up.prior().assign(prior_counted_in=False, decided_by="data")
-    section = decided_section(results_with(tmp_path, prior=(table, PRIOR_TABLE)))
+    section = prior_weight_section(results_with(tmp_path, prior=(table, PRIOR_TABLE)))
     assert "The data decided the pose alone" in section.text
     assert section.tables[0].sentence == "6 decided by data."
     assert section.tables[0].heads[1] == "Estimate minus hand"
@@ -41,7 +41,7 @@ def test_levels_and_intrinsics_have_their_units(tmp_path):
     names = ["log_shared_level", "principal_point_px", "focal_length_m"]
     others = made_up.prior().iloc[:3].assign(parameter=names, difference=[0.5, 1.5, 2e-5])
     table = pd.concat([made_up.prior(), others])
-    section = decided_section(results_with(tmp_path, prior=(table, PRIOR_TABLE)))
+    section = prior_weight_section(results_with(tmp_path, prior=(table, PRIOR_TABLE)))
     assert "Levels and intrinsics always have a prior" in section.text
     assert [row[:2] for row in section.tables[0].rows[6:]] == [
         ["shared level (logarithm)", "0.5000"],
@@ -68,6 +68,6 @@ def test_an_offset_that_cannot_be_told_is_a_warning(tmp_path):
     assert "nan" not in section.text
 
 
-@pytest.mark.parametrize("make", [decided_section, clocks_section])
+@pytest.mark.parametrize("make", [prior_weight_section, clocks_section])
 def test_no_result_no_section(make, tmp_path):
     assert make(results_with(tmp_path)) is None

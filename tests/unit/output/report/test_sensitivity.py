@@ -6,7 +6,7 @@ import pytest
 
 from linepose.experiments.sensitivity import SENSITIVITY
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
-from linepose.output.report.sensitivity import dependence_section
+from linepose.output.report.sensitivity import influence_section
 from linepose.pipeline.calibration import Calibration
 from linepose.tables import write_table
 from unit import made_up
@@ -29,18 +29,18 @@ def sensitivity():
 
 def test_changes_are_told_in_millimetres_and_the_estimate_itself_is_no_change(results):
     write_table(sensitivity(), results.results.path("sensitivity"), SENSITIVITY)
-    section = dependence_section(results)
+    section = influence_section(results)
     assert "focal length + 1 sigma moves the camera most: by 40 mm and 0.00°" in section.text
     settings = section.tables[0]
     assert settings.rows == [["focal length + 1 sigma", "4", "+40", "+0", "+0", "0.00", "2.5"]]
 
 
 def test_the_most_influential_observation_comes_first(results):
-    (table,) = dependence_section(results).tables
+    (table,) = influence_section(results).tables
     assert [row[0] for row in table.rows] == ["without 3", "without 2", "without 1", "without 4"]
     assert table.rows[0][-1] == "1.5"
 
 
 def test_a_platform_without_these_experiments_has_no_section(results):
     results.results.path("leave_one_out").unlink()
-    assert dependence_section(results) is None
+    assert influence_section(results) is None
