@@ -49,6 +49,7 @@ HEADING = "t n e d r p y\n"
         (rows("; "), {"delimiter": ";"}),
         ("a title\nof two lines\n" + rows(","), {"skipped_lines": 2}),
         ("# a title\n" + rows(",") + "# end\n", {"comment": "#"}),
+        (rows(",").replace("\n", " # note\n"), {"comment": "#"}),
         ("\n\n" + rows(",") + "\n", {}),
         (HEADING + rows(), {"delimiter": " "} | NAMES),
         ("\ufeff" + HEADING + rows(), {"delimiter": " "} | NAMES),
