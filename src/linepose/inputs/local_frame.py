@@ -23,6 +23,8 @@ from linepose.tables import optional_floats, texts
 
 GEODETIC: Final = "EPSG:4979"  # WGS 84: latitude, longitude (deg), ellipsoidal height (m)
 
+_MARGIN_DEG: Final = 3.0  # around the area that a projected system is made for
+
 MAP_FRAME: Final = pa.schema([*texts("crs"), *optional_floats("latitude_deg", "longitude_deg", "height_m")])
 
 
@@ -43,15 +45,36 @@ def tangent_frame(origin: tuple[float, float, float]) -> LocalFrame:
 
 
 def projected_frame(crs: str) -> LocalFrame:
-    """Northing, easting and minus the height of a projected CRS ("EPSG:32633"); raises InputError for any other."""
-    try:
-        projected = CRS.from_user_input(crs).is_projected
-    except CRSError:
-        projected = False
-    if not projected:
-        place, expected = "source.navigation.crs", "a projected CRS, for example EPSG:32633"
+    """Northing, easting and minus the height of a projected CRS ("EPSG:32633"); raises InputError for any other.
+
+    So does one that counts in feet: all lengths are metres.
+    """
+    place, expected = "source.navigation.crs", "a projected CRS in metres, for example EPSG:32633"
+    known = _projected_crs(crs)
+    if known is None:
         raise InputError(place, repr(crs), expected, "correct or remove the key")
+    units = {axis.unit_name for axis in known.axis_info if axis.unit_conversion_factor != 1.0}
+    if units:
+        found = f"{crs!r}, which counts in units of {', '.join(sorted(units))}"
+        raise InputError(place, found, expected, "give a system of the place in metres, or remove the key")
     return LocalFrame(crs, None)
+
+
+def check_is_near(frame: LocalFrame, latitude_deg: float, longitude_deg: float, place: str) -> None:
+    """Raise InputError where a projected CRS is made for another part of the Earth than this position."""
+    known = _projected_crs(frame.crs)
+    area = None if known is None else known.area_of_use
+    if area is None:
+        return
+    east_of_west = (longitude_deg - area.west + _MARGIN_DEG) % 360.0
+    width = area.east - area.west + (360.0 if area.east < area.west else 0.0) + 2 * _MARGIN_DEG
+    if east_of_west > width or not area.south - _MARGIN_DEG <= latitude_deg <= area.north + _MARGIN_DEG:
+        raise InputError(
+            place,
+            f"{frame.crs}, made for {area.name}, with positions at {latitude_deg:.2f}, {longitude_deg:.2f} deg",
+            f"a system of the place, such as {utm_crs(latitude_deg, longitude_deg)}",
+            "correct or remove the key",
+        )
 
 
 def utm_crs(latitude_deg: float, longitude_deg: float) -> str:
@@ -120,6 +143,16 @@ def _topocentric(origin: tuple[float, float, float]) -> Transformer:
         "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad +step +proj=cart +ellps=WGS84 "
         f"+step +proj=topocentric +ellps=WGS84 +lat_0={latitude} +lon_0={longitude} +h_0={height}"
     )
+
+
+@cache
+def _projected_crs(crs: str) -> CRS | None:
+    """The system of this name; None where there is none, or it is not projected."""
+    try:
+        known = CRS.from_user_input(crs)
+    except CRSError:
+        return None
+    return known if known.is_projected else None
 
 
 @cache

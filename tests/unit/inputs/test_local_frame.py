@@ -5,6 +5,7 @@ from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.inputs.local_frame import (
     check_geodetic,
+    check_is_near,
     geodetic_from_local,
     local_from_geodetic,
     projected_frame,
@@ -79,3 +80,28 @@ def test_crs_must_be_projected(crs):
 def test_place_that_is_none_is_told(row):
     with pytest.raises(InputError, match=r"log, record 2: found latitude"):
         check_geodetic(np.array([[1.0, 2.0, 3.0], row]), "log")
+
+
+def test_crs_in_feet_is_refused():
+    with pytest.raises(
+        InputError, match=r"'EPSG:2263', which counts in units of US survey foot, .* in metres"
+    ):
+        projected_frame("EPSG:2263")
+
+
+@pytest.mark.parametrize(
+    ("crs", "latitude", "longitude", "near"),
+    [
+        ("EPSG:32756", -33.9, 151.2, True),
+        ("EPSG:32756", -33.9, 146.0, False),
+        ("EPSG:32633", -33.9, 151.2, False),
+        ("EPSG:32660", 52.0, -179.0, True),  # across the date line
+        ("EPSG:3857", 10.0, 170.0, True),
+    ],
+)
+def test_crs_of_another_part_of_the_earth_is_told(crs, latitude, longitude, near):
+    if near:
+        check_is_near(projected_frame(crs), latitude, longitude, "source.navigation.crs")
+    else:
+        with pytest.raises(InputError, match=r"made for .*, with positions at -33\.90, .*such as EPSG:327"):
+            check_is_near(projected_frame(crs), latitude, longitude, "source.navigation.crs")

@@ -15,6 +15,7 @@ from linepose.inputs.axes import turned
 from linepose.inputs.local_frame import (
     LocalFrame,
     check_geodetic,
+    check_is_near,
     local_from_geodetic,
     projected_frame,
     tangent_frame,
@@ -118,7 +119,9 @@ def _frame(section: GeodeticSection, first: Floats) -> LocalFrame:
     """The frame that the keys name, of a log whose first place (3,) is this."""
     latitude, longitude, height = (float(one) for one in first)
     if section.frame == "projected":
-        return projected_frame(section.crs or utm_crs(latitude, longitude))
+        frame = projected_frame(section.crs or utm_crs(latitude, longitude))
+        check_is_near(frame, latitude, longitude, "source.navigation.crs")
+        return frame
     return tangent_frame(section.origin or (latitude, longitude, height))
 
 
