@@ -71,17 +71,20 @@ def observations_from_arrays(
     0            1      0  310.2      0.0
     1            1      1  325.9      0.1
     """
-    pixels = np.atleast_1d(np.asarray(u_px, dtype=float))
+    pixels = np.atleast_1d(_numbers("u_px", u_px))
     count = len(pixels)
     position = _shaped("position_m", position_m, (count, 3))
     euler = _shaped("euler_rad", euler_rad, (count, 3))
     if np.any(np.abs(euler) > 2 * np.pi):
         largest = float(np.abs(euler).max())
         raise InputError("euler_rad", f"an angle of {largest:g}", "radians", "convert degrees with numpy.radians")
-    matrices = np.asarray(covariance, dtype=float)
-    matrices = _shaped(
-        "covariance", np.broadcast_to(matrices, (count, 6, 6)) if matrices.ndim == 2 else matrices, (count, 6, 6)
-    )
+    matrices = _numbers("covariance", covariance)
+    if matrices.shape not in ((6, 6), (count, 6, 6)):
+        found = f"shape {matrices.shape}"
+        raise InputError(
+            "covariance", found, f"shape (6, 6) or ({count}, 6, 6)", "give one matrix for all, or one a row"
+        )
+    matrices = _shaped("covariance", np.broadcast_to(matrices, (count, 6, 6)), (count, 6, 6))
     _check_covariances(matrices)
     columns: dict[str, Floats | np.ndarray] = {
         "observation": _whole("observation", observation, count),
@@ -101,8 +104,15 @@ def observations_from_arrays(
     return table.sort_values(["observation", "point"], ignore_index=True)
 
 
+def _numbers(name: str, values: ArrayLike) -> Floats:
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(name, "text, or rows of different lengths", "an array of numbers", "correct it") from None
+
+
 def _shaped(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Floats:
-    array = np.asarray(values, dtype=float)
+    array = _numbers(name, values)
     if array.shape != shape:
         raise InputError(name, f"shape {array.shape}", f"shape {shape}", "give one row a point seen, as in u_px")
     if not np.all(np.isfinite(array)):

@@ -177,6 +177,7 @@ def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
         )
     if observations.empty:
         raise InputError("observations", "no row", "one row a point seen", "add observations")
+    _check_rows(observations)
     off_line = np.flatnonzero(~observations["u_px"].between(-1.0, float(n_pixels)))
     if off_line.size:
         raise InputError(
@@ -188,3 +189,21 @@ def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
     if "time_us" not in observations.columns:
         observations = observations.assign(time_us=np.zeros(len(observations), dtype=np.int64))
     return observations if "nav_gap_s" in observations.columns else observations.assign(nav_gap_s=0.0)
+
+
+def _check_rows(observations: pd.DataFrame) -> None:
+    """Raise InputError naming the first row with something else than numbers, or that says a point of a view again."""
+    numbers = observations[list(_NEEDED)].apply(pd.to_numeric, errors="coerce")
+    wrong = ~np.isfinite(numbers.to_numpy(dtype=float))
+    for name in ("observation", "point"):
+        column = numbers[name].to_numpy(dtype=float)
+        wrong[:, numbers.columns.get_loc(name)] |= (column < 0) | (column != np.floor(column))
+    for row, column in np.argwhere(wrong)[:1]:
+        name = numbers.columns[column]
+        what = "a whole number, not negative" if name in ("observation", "point") else "a finite number"
+        raise InputError(
+            f"observations, row {row}", f"{name} {observations[name].iloc[row]}", what, "correct or remove the row"
+        )
+    for row in np.flatnonzero(observations.duplicated(["observation", "point"]))[:1]:
+        found = f"point {observations['point'].iloc[row]} of observation {observations['observation'].iloc[row]} again"
+        raise InputError(f"observations, row {row}", found, "each point once a view", "remove one of the rows")

@@ -83,9 +83,7 @@ def test_place_that_is_none_is_told(row):
 
 
 def test_crs_in_feet_is_refused():
-    with pytest.raises(
-        InputError, match=r"'EPSG:2263', which counts in units of US survey foot, .* in metres"
-    ):
+    with pytest.raises(InputError, match=r"'EPSG:2263', which counts in units of US survey foot, .* in metres"):
         projected_frame("EPSG:2263")
 
 

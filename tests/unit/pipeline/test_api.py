@@ -165,6 +165,13 @@ def test_bad_observation_is_removed(simulated, arrays):
         ("covariance", lambda a: a + np.eye(6, k=1), "covariance, row 0.*not symmetric"),
         ("covariance", lambda a: -a, "covariance, row 0.*negative"),
         ("covariance", lambda a: 0 * a, "covariance, row 0: found zero"),
+        (
+            "covariance",
+            lambda _: [[1e-4]],
+            r"covariance: found shape \(1, 1\), expected shape \(6, 6\) or \(240, 6, 6\)",
+        ),
+        ("covariance", lambda _: np.eye(3), r"covariance: found shape \(3, 3\)"),
+        ("u_px", lambda a: ["a"] * len(a), "u_px: found text"),
         ("time_us", lambda a: a + 0.5, "time_us, row 0.*give microseconds"),
     ],
 )
@@ -184,6 +191,9 @@ def test_times_are_kept_to_the_microsecond(arrays):
     ("name", "row", "value", "told"),
     [
         ("u_px", 7, 9000.0, "observations, row 7: found u_px 9000, expected a pixel of the scan line, 0 to 647"),
+        ("north_m", 7, np.nan, "observations, row 7: found north_m nan, expected a finite number"),
+        ("point", 3, -1, "observations, row 3: found point -1, expected a whole number, not negative"),
+        ("point", 1, 0, "observations, row 1: found point 0 of observation 1 again"),
         ("point", 3, 10**12, "observations, row .*: found point 1000000000000, .* 16 different points"),
     ],
 )
