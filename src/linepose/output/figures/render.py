@@ -12,12 +12,14 @@ from linepose.output.figures.style import save
 from linepose.pipeline.calibration import Calibration
 
 
-def render_figures(calibration: Calibration, folder: Path, entries: Sequence[FigureEntry] = FIGURES) -> pd.DataFrame:
+def render_figures(
+    calibration: Calibration, folder: Path, entries: Sequence[FigureEntry] | None = None
+) -> pd.DataFrame:
     """Draw figures, by default all of the registry, into a folder, PNG and PDF; one row a figure, drawn or left out.
 
     Columns as in `FIGURES`: where `left_out` has a sentence there is no file.
     """
-    return pd.DataFrame([_render(entry, calibration, folder) for entry in entries])
+    return pd.DataFrame([_render(entry, calibration, folder) for entry in entries or FIGURES])
 
 
 def _render(entry: FigureEntry, calibration: Calibration, folder: Path) -> dict[str, str]:

@@ -100,7 +100,7 @@ def test_weights_are_coloured_by_what_the_errors_look_like():
     assert mesh.get_array().reshape(4, 6)[2, 4] == 0.05
     assert legend(figure) == ["as good as the rest", "its clock", "labels"]
     told = weights_caption(adjusted_views(), adjusted_measurements())
-    assert "Far off: 6 (clock), 5 (labels)." in told
+    assert "Far off: 6 (its clock), 5 (labels)." in told
     assert "point 2 of observation 5 (0.05)" in told
 
 
