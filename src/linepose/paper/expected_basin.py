@@ -17,11 +17,9 @@ from numpy.typing import ArrayLike
 
 from linepose.config.platform import Platform, load_platform
 from linepose.estimation.likelihood_estimator import LikelihoodEstimator
-from linepose.estimation.optimise import laplace_covariance, minimise
 from linepose.experiments.basin import SECTION, BasinSettings, Sweep, summarise
-from linepose.likelihood.published import PublishedLikelihood
 from linepose.paper.declarations import load_declarations
-from linepose.simulation.survey import faulty_observations, simulate_survey
+from linepose.paper.simulated_estimate import simulated_estimate
 
 QUANTILE: Final = 0.995  # of Student's t, either way
 _SEARCH: Final = "powell"  # the search that section 4.7 describes
@@ -42,18 +40,11 @@ def shares_outside(
 
 
 def _share_of_survey(platform: Platform, grid: BasinSettings, n_starts: int, random: np.random.Generator) -> float:
-    assert platform.simulation is not None
-    survey, _ = simulate_survey(platform.intrinsics(), platform.simulation, int(random.integers(2**63)))
-    faulty = set(faulty_observations(platform.simulation))
-    accepted = survey.select([number for number in survey.number if number not in faulty])
-    likelihood = PublishedLikelihood(accepted, platform.intrinsics())
-    start = platform.start_pose()
-    found = minimise(likelihood, likelihood.start(start), start)
-    covariance = laplace_covariance(likelihood, found.parameters)
+    one = simulated_estimate(platform, random)
     outside = [cell for cell in range(grid.n_cells) if not grid.region().holds(*grid.offset(cell))]
     cells = random.choice(outside, n_starts, replace=False)
-    estimator = LikelihoodEstimator(likelihood)
-    sweep = Sweep(estimator, found.parameters, covariance, grid, int(random.integers(2**31)), grid.success_threshold)
+    estimator = LikelihoodEstimator(one.likelihood)
+    sweep = Sweep(estimator, one.optimum, one.covariance, grid, int(random.integers(2**31)), grid.success_threshold)
     rows = sweep.rows(_SEARCH, [int(cell) for cell in cells])
     return float(summarise(rows, grid.region()).set_index("region").loc["outside", "success_rate"])
 

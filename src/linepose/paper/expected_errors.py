@@ -15,13 +15,11 @@ import pandas as pd
 
 from linepose.arrays import Floats
 from linepose.config.platform import Platform, load_platform
-from linepose.estimation.optimise import laplace_covariance, minimise
 from linepose.experiments.truth_error import truth_error_table
 from linepose.geometry.pose import POSE_COLUMNS
-from linepose.likelihood.published import PublishedLikelihood
 from linepose.paper.declarations import load_declarations
 from linepose.paper.importance import importance_samples
-from linepose.simulation.survey import faulty_observations, simulate_survey
+from linepose.paper.simulated_estimate import simulated_estimate
 
 QUANTILES: Final = (0.005, 0.5, 0.995)
 _N_DRAWS: Final = 2000
@@ -39,19 +37,12 @@ def errors_in_sigmas(platform: Platform, n_surveys: int, seed: int) -> pd.DataFr
 
 
 def _errors_of_survey(platform: Platform, random: np.random.Generator) -> "pd.Series[float]":
-    assert platform.simulation is not None
-    survey, truth = simulate_survey(platform.intrinsics(), platform.simulation, int(random.integers(2**63)))
-    faulty = set(faulty_observations(platform.simulation))
-    accepted = survey.select([number for number in survey.number if number not in faulty])
-    likelihood = PublishedLikelihood(accepted, platform.intrinsics())
-    start = platform.start_pose()
-    found = minimise(likelihood, likelihood.start(start), start)
-    covariance = laplace_covariance(likelihood, found.parameters)
-    samples = importance_samples(likelihood, found.parameters, covariance, random, _N_DRAWS)
-    optimum = dict(zip(POSE_COLUMNS, found.parameters, strict=True))
-    optima = pd.DataFrame([{"stage": _STAGE, "n_observations": len(accepted.number), **optimum}])
+    one = simulated_estimate(platform, random)
+    samples = importance_samples(one.likelihood, one.optimum, one.covariance, random, _N_DRAWS)
+    optimum = dict(zip(POSE_COLUMNS, one.optimum, strict=True))
+    optima = pd.DataFrame([{"stage": _STAGE, "n_observations": len(one.likelihood.survey.number), **optimum}])
     draws: Floats = samples.resample(random, _N_DRAWS)
-    errors = truth_error_table(optima, {_STAGE: draws}, truth.pose)
+    errors = truth_error_table(optima, {_STAGE: draws}, one.true_pose)
     return errors.set_index("quantity")["error_in_sigmas"]
 
 

@@ -11,7 +11,7 @@ from linepose.arrays import Floats
 from linepose.config.platform import Platform
 from linepose.config.project import Project
 from linepose.errors import InputError
-from linepose.pipeline.calibrate import CalibrationSettings, calibrate
+from linepose.pipeline.calibrate import CalibrationSettings, calibrate, check_rows
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.load import read_observations
 from linepose.pipeline.project_folder import find_project, load_platform_project
@@ -96,11 +96,7 @@ def observations_from_arrays(
     columns |= dict(zip(EULER_COLUMNS, euler.T, strict=True))
     columns |= {name: matrices[:, i, j] for name, (i, j) in zip(COVARIANCE_COLUMNS, COVARIANCE_INDICES, strict=True)}
     table = pd.DataFrame(columns).assign(nav_gap_s=0.0)
-    twice = table.duplicated(["observation", "point"])
-    if twice.any():
-        row = int(np.flatnonzero(twice)[0])
-        found = f"point {table['point'].iloc[row]} of observation {table['observation'].iloc[row]} again in row {row}"
-        raise InputError("observations", found, "each point once a view", "remove one of the rows")
+    check_rows(table)
     return table.sort_values(["observation", "point"], ignore_index=True)
 
 

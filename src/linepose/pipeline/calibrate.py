@@ -177,7 +177,7 @@ def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
         )
     if observations.empty:
         raise InputError("observations", "no row", "one row a point seen", "add observations")
-    _check_rows(observations)
+    check_rows(observations)
     off_line = np.flatnonzero(~observations["u_px"].between(-1.0, float(n_pixels)))
     if off_line.size:
         raise InputError(
@@ -191,7 +191,7 @@ def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
     return observations if "nav_gap_s" in observations.columns else observations.assign(nav_gap_s=0.0)
 
 
-def _check_rows(observations: pd.DataFrame) -> None:
+def check_rows(observations: pd.DataFrame) -> None:
     """Raise InputError naming the first row with something else than numbers, or that says a point of a view again."""
     numbers = observations[list(_NEEDED)].apply(pd.to_numeric, errors="coerce")
     wrong = ~np.isfinite(numbers.to_numpy(dtype=float))
