@@ -19,6 +19,7 @@ from linepose.check.labels import count_findings, position_findings
 from linepose.check.motion import motion_findings
 from linepose.check.prediction import predict
 from linepose.check.scans import scan_findings
+from linepose.check.told import readers_warnings
 from linepose.check.views import view_findings
 from linepose.config.platform import Platform, load_platform, platform_faults, read_yaml
 from linepose.config.project import Project
@@ -87,8 +88,9 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
         loaded = load_platform_project(platform, root, compared_platforms, offline=True)
     except InputError as fault:
         return CheckReport(platform, (*findings, of_fault("data set", fault)))
-    more, observations = recorded_findings(loaded, platform, root)
-    findings += more
+    with readers_warnings() as told:
+        more, observations = recorded_findings(loaded, platform, root)
+    findings += [*more, *told]
     if observations is None or any(finding.level == Level.ERROR for finding in findings):
         return CheckReport(platform, tuple(findings))
     more, sigmas = geometry_findings(settings, observations, _recorder(loaded, platform, root, observations))

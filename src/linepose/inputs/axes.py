@@ -38,13 +38,19 @@ def euler_by_small_rotation(euler_rad: ArrayLike) -> Floats:
     return np.asarray(np.linalg.inv(rotations.small_rotation_by_euler(euler_rad)))
 
 
+def turned_angles(turn: ArrayLike, euler_rad: ArrayLike) -> Floats:
+    """Euler angles (K, 3) of bodies whose old angles are `euler_rad` (K, 3), seen from axes that `turn` (K, 3, 3)."""
+    matrices = np.asarray(turn, dtype=float) @ rotations.matrix_from_euler(np.asarray(euler_rad, dtype=float))
+    return rotations.euler_from_matrix(matrices)
+
+
 def turned(covariance: ArrayLike, turn: ArrayLike, euler_rad: ArrayLike) -> tuple[Floats, Floats]:
     """Euler angles (K, 3) and covariances (K, 6, 6) of position and angles, seen from axes that are turned.
 
     `turn` (K, 3, 3) takes vectors from the old axes to the new; `euler_rad` (K, 3) are the old angles.
     """
     old, matrix = np.asarray(euler_rad, dtype=float), np.asarray(turn, dtype=float)
-    new = rotations.euler_from_matrix(matrix @ rotations.matrix_from_euler(old))
+    new = turned_angles(matrix, old)
     both = np.zeros((*matrix.shape[:-2], 6, 6))
     both[..., :3, :3] = matrix
     both[..., 3:, 3:] = euler_by_small_rotation(new) @ matrix @ rotations.small_rotation_by_euler(old)

@@ -35,7 +35,7 @@ class ScansSection(Settings):
     )
     scans: str = Field(
         "scans/*.hdr",
-        description="Scans (ENVI headers, PNG, TIFF) in the order of the observations, with their time stamps beside.",
+        description="Scans (ENVI headers, PNG, TIFF, JPEG) in the order of the observations, with their time stamps beside.",
     )
     time_stamps: Literal["csv", "resonon", "headwall", "specim"] = Field(
         "csv",

@@ -137,3 +137,21 @@ def test_points_to_be_detected_are_left_to_the_run(scans):
     assert report.level == Level.OK
     assert report.predicted == ()
     assert any("without labels" in finding.found for finding in report.findings)
+
+
+def test_what_readers_pass_over_is_told_once(scans):
+    path = scans / "data" / "mine" / "navigation.parquet"
+    for header in (scans / "data" / "mine" / "scans").glob("*.hdr"):
+        header.write_text(header.read_text().replace("byte order = 0", ""))
+    settings(scans, source={"navigation": {"format": "table", "file": path.name}, "covariances": "covariances.csv"})
+    table = pd.read_parquet(path)
+    pd.concat([table[:3], table[2:]]).to_parquet(path, index=False)
+    told = [(one.subject, one.found) for one in check_platform("mine", scans).of(Level.WARNING)]
+    expected = [
+        ("scans", r"observation-01.hdr: no byte order: read as 0, as ENVI does \(and 9 more like it\)"),
+        ("navigation log", r"navigation.parquet: 1 records that repeat the one before are passed over"),
+    ]
+    assert len(told) == 2
+    for (subject, found), (its_subject, pattern) in zip(told, expected, strict=True):
+        assert subject == its_subject
+        assert re.search(pattern, found)

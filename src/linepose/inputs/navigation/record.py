@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.inputs.axes import turned
+from linepose.inputs.axes import turned, turned_angles
 from linepose.inputs.local_frame import (
     LocalFrame,
     check_geodetic,
@@ -26,6 +26,7 @@ from linepose.survey.navigation import NavigationCovariances
 from linepose.survey.navigation_log import NavigationLog
 
 _FEWEST: Final = 2
+_POSES_AT_ONCE: Final = 100_000
 _EARLIEST_US, _LATEST_US = 315_964_800_000_000, 4_102_444_800_000_000  # 1980 to 2100
 
 log = logging.getLogger(__name__)
@@ -95,19 +96,28 @@ def geodetic_record(
         check_geodetic(one.position, one.place)
     both = _joined_poses(poses)
     frame = _frame(section, both.position[0])
-    position, turn = local_from_geodetic(frame, both.position)
+    position, euler = _in_frame(frame, both)
     if not np.all(np.isfinite(position)):
         place = f"{both.place}, record {np.flatnonzero(~np.all(np.isfinite(position), axis=1))[0] + 1}"
         raise InputError(place, f"a place outside {frame.crs}", "one inside it", "correct source.navigation.crs")
-    zeros = np.zeros((len(position), 6, 6))
-    euler, _ = turned(zeros, turn, both.euler_rad)
     at_poses = _joined_covariances(covariances)
     if at_poses is not None:
         row = nearest_rows(both.time_us, at_poses.time_us)
-        _, covariance = turned(at_poses.covariance, turn[row], both.euler_rad[row])
+        _, turn = local_from_geodetic(frame, both.position[row])
+        _, covariance = turned(at_poses.covariance, turn, both.euler_rad[row])
         at_poses = NavigationCovariances(at_poses.time_us, covariance, at_poses.source)
     log = _log(both, position, euler)
     return NavigationRecord(log, at_poses, frame.crs, frame.origin)
+
+
+def _in_frame(frame: LocalFrame, poses: Poses) -> tuple[Floats, Floats]:
+    """Positions (K, 3) and angles (K, 3) in a frame, part after part: the matrices of all poses take much memory."""
+    position, euler = np.empty_like(poses.position), np.empty_like(poses.euler_rad)
+    for first in range(0, len(position), _POSES_AT_ONCE):
+        part = slice(first, first + _POSES_AT_ONCE)
+        position[part], turn = local_from_geodetic(frame, poses.position[part])
+        euler[part] = turned_angles(turn, poses.euler_rad[part])
+    return position, euler
 
 
 def _log(poses: Poses, position: Floats, euler_rad: Floats) -> NavigationLog:

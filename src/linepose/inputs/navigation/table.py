@@ -174,8 +174,9 @@ def _columns(path: Path, section: TableSection) -> Columns:
     if section.time_scale in OF_TEXT:
         as_text += parts_of(columns.time)
     if path.suffix.lower() not in _PARQUET:
-        table = read_text(path, section, as_text, apart)
-        return Columns(path, table.cells, table.first_line)
+        used = [part for name in [*columns.of_poses(), *columns.of_sigmas()] for part in parts_of(name)]
+        table = read_text(path, section, used, as_text, apart)
+        return Columns(path, table.cells, table.first_line, table.names)
     try:
         return Columns(path, pq.read_table(path).to_pandas(timestamp_as_object=False), 0)
     except (pa.ArrowException, OSError) as error:
@@ -268,7 +269,8 @@ def _time_us(table: Columns, section: TableSection, columns: ColumnsSection) -> 
     """The times (K,) in Unix microseconds."""
     scale, place = section.time_scale, f"{table.path}, {' '.join(parts_of(columns.time))}"
     if scale in OF_TEXT:
-        return unix_from_text(table.text(columns.time), scale, section.time_format, place)
+        texts = (piece.text(columns.time) for piece in table.pieces())
+        return np.concatenate([unix_from_text(text, scale, section.time_format, place) for text in texts])
     times = gps_time.microseconds(table.number(columns.time), section.time_unit)
     if scale in OF_DAY:
         return unix_from_day(times, section.date, scale, str(table.path))

@@ -1,6 +1,6 @@
 """Columns of a table by their names, as numbers, angles or text; a fault is told with file, row and column."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -18,23 +18,30 @@ _ANGLE: Final = (  # 22 18 04.3, 22:18:04.3, 22°18'04.3"N; minutes or seconds m
 )
 
 
+_ROWS_AT_ONCE: Final = 50_000
+
+
 def parts_of(name: Name) -> tuple[str, ...]:
     """The columns of a value."""
     return (name,) if isinstance(name, str) else name
 
 
 class Columns:
-    """The cells of one file, whose first row of values stands on this line (counted from 0)."""
+    """The cells of one file, whose first row of values stands on this line (counted from 0).
 
-    def __init__(self, path: Path, cells: pd.DataFrame, first_line: int) -> None:
+    `names` are all columns of the file, where `cells` are not of all.
+    """
+
+    def __init__(self, path: Path, cells: pd.DataFrame, first_line: int, names: Sequence[str] = ()) -> None:
         self.path, self.cells, self.first_line = path, cells, first_line
+        self.names = tuple(names) or tuple(map(str, cells.columns))
 
     def check(self, names: Sequence[Name]) -> None:
         """Raise InputError where one of these columns is not there."""
         there = list(self.cells.columns)
         missing = [part for name in names for part in parts_of(name) if part not in there]
         if missing:
-            found = f"columns {', '.join(map(str, there))}"
+            found = f"columns {', '.join(self.names)}"
             expected = f"among them {', '.join(missing)}"
             raise InputError(str(self.path), found, expected, "correct source.navigation.columns")
 
@@ -45,7 +52,12 @@ class Columns:
 
     def rows(self, kept: np.ndarray) -> "Columns":
         """The rows (K,) of these; their numbers in the file are kept."""
-        return Columns(self.path, self.cells[kept], self.first_line)
+        return Columns(self.path, self.cells[kept], self.first_line, self.names)
+
+    def pieces(self) -> Iterator["Columns"]:
+        """The rows in parts, one after the other: text of all of them at once takes much memory."""
+        for first in range(0, max(len(self.cells), 1), _ROWS_AT_ONCE):
+            yield Columns(self.path, self.cells.iloc[first : first + _ROWS_AT_ONCE], self.first_line, self.names)
 
     def place(self, row: int, name: str) -> str:
         """Where the value in this row (counted from 0) stands in the file."""
@@ -71,6 +83,9 @@ class Columns:
 
     def degrees(self, name: Name) -> Floats:
         """Angles (K,) in degrees, of text with degrees, minutes and seconds; S and W count as minus."""
+        return np.concatenate([piece._degrees(name) for piece in self.pieces()])
+
+    def _degrees(self, name: Name) -> Floats:
         text = self.text(name)
         parts = text.str.extract(_ANGLE)
         for row in np.flatnonzero(parts["d"].isna().to_numpy())[:1]:

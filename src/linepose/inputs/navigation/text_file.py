@@ -19,6 +19,7 @@ from linepose.inputs.navigation.format import GeodeticSection
 
 _LINES_ABOVE: Final = 2_000  # within which the first row of values must stand
 _BRIEFLY: Final = 60
+_ROWS_AT_ONCE: Final = 50_000
 _BLANKS: Final = r"\s+"
 
 
@@ -58,25 +59,32 @@ class TextSection(GeodeticSection):
 
 @dataclass(frozen=True)
 class TextTable:
-    """The cells of a file; `first_line` (from 0) is the line of its first row of values."""
+    """Cells of a file; `first_line` (from 0) is the line of its first row of values, `names` are all its columns."""
 
     cells: pd.DataFrame
     first_line: int
+    names: tuple[str, ...]
 
 
-def read_text(path: Path, layout: TextSection, as_text: Iterable[str], apart: Sequence[str] = ()) -> TextTable:
-    """The rows of a text file; columns `as_text` stay text.
+def read_text(
+    path: Path, layout: TextSection, used: Iterable[str], as_text: Iterable[str], apart: Sequence[str] = ()
+) -> TextTable:
+    """The rows of a text file, of the columns `used` that it has; those `as_text` stay text.
 
     Degrees, minutes and seconds of the columns `apart` may take three cells each, where rows have so many cells more
     than the heading; they are then named NAME d, NAME m, NAME s. Raises InputError naming the line.
     """
     try:
         names, first_line = _head(path, layout, apart)
-        cells = _cells(path, layout, names, first_line, set(as_text) & set(names))
+        parts = {f"{name} {part}" for name in apart for part in "dms"}
+        kept = [number for number, name in enumerate(names) if name in {*used, *parts}]
+        if not kept:
+            return TextTable(pd.DataFrame(), first_line, tuple(names))
+        cells = _cells(path, layout, names, first_line, kept, set(as_text))
     except (UnicodeError, pd.errors.ParserError, OSError) as error:
         raise _fault(path, error) from None
-    cells.columns = pd.Index(names)
-    return TextTable(cells, first_line)
+    cells.columns = pd.Index([names[number] for number in kept])
+    return TextTable(cells, first_line, tuple(names))
 
 
 def _fault(path: Path, error: Exception) -> InputError:
@@ -90,7 +98,10 @@ def _fault(path: Path, error: Exception) -> InputError:
     return InputError(str(path), found, "text with the same cells in each row", "mend it")
 
 
-def _cells(path: Path, layout: TextSection, names: list[str], first_line: int, as_text: set[str]) -> pd.DataFrame:
+def _cells(
+    path: Path, layout: TextSection, names: list[str], first_line: int, kept: list[int], as_text: set[str]
+) -> pd.DataFrame:
+    """The columns `kept`, by their numbers; read in parts, so that the others never take memory together."""
     numbers = list(range(len(names)))
     options: dict[str, Any] = {
         "header": None,
@@ -100,12 +111,16 @@ def _cells(path: Path, layout: TextSection, names: list[str], first_line: int, a
         "comment": layout.comment,
         "encoding": layout.encoding,
         "decimal": layout.decimal,
-        "dtype": {number: str for number, name in enumerate(names) if name in as_text},
+        "dtype": {number: "string[pyarrow]" for number, name in enumerate(names) if name in as_text},
+        "chunksize": _ROWS_AT_ONCE,
     }
     if layout.widths:
-        return pd.read_fwf(path, widths=layout.widths, **options)
-    separator = _BLANKS if layout.delimiter.isspace() and layout.delimiter != "\t" else layout.delimiter
-    return pd.read_csv(path, sep=separator, skipinitialspace=True, **options)
+        parts = pd.read_fwf(path, widths=layout.widths, **options)
+    else:
+        separator = _BLANKS if layout.delimiter.isspace() and layout.delimiter != "\t" else layout.delimiter
+        parts = pd.read_csv(path, sep=separator, skipinitialspace=True, **options)
+    with parts:
+        return pd.concat([part[kept] for part in parts])
 
 
 def _head(path: Path, layout: TextSection, apart: Sequence[str]) -> tuple[list[str], int]:

@@ -1,4 +1,4 @@
-"""Scans: images of stacked scan lines with a time stamp for each line, read from ENVI, PNG or TIFF files.
+"""Scans: images of stacked scan lines with a time stamp for each line, read from ENVI, PNG, TIFF or JPEG files.
 
 The time stamps of `NAME.hdr` (or .png, .tif) stand in `NAME-times.csv`, one a row; linepose.inputs.scans.line_times
 reads what devices write instead. Whatever a file claims about its size is checked before memory is taken for it.
@@ -41,7 +41,7 @@ LineTimes = Callable[[Path, int], NDArray[np.int64]]  # time stamps (us) of a sc
 
 
 def read_scan(path: Path, line_times: LineTimes | None = None, n_pixels: int | None = None) -> Scan:
-    """The scan of an ENVI header (.hdr), PNG or TIFF file, with the time stamps that `line_times` finds for it.
+    """The scan of an ENVI header (.hdr), PNG, TIFF or JPEG file, with the time stamps that `line_times` finds for it.
 
     Without, they stand in `NAME-times.csv`. Raises InputError where a file is missing, truncated, of an unsupported
     kind, contradicts another, or is not `n_pixels` wide, which is told before pixels are read.
@@ -89,4 +89,6 @@ _READERS: Final[dict[str, Callable[[Path, int | None], Intensity]]] = {
     ".png": read_picture,
     ".tif": read_picture,
     ".tiff": read_picture,
+    ".jpg": read_picture,
+    ".jpeg": read_picture,
 }

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linepose.errors import InputError
-from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation import read_navigation, text_file
 from linepose.inputs.navigation.table import TableSection
 
 FIRST_US = 1_700_000_000_250_000  # 2023-11-14 22:13:20.25 UTC
@@ -180,3 +180,22 @@ def test_broken_text_is_one_line(tmp_path, text, keys, told):
 def test_encoding_that_is_none_is_told():
     with pytest.raises(InputError, match=r"encoding: found 'utf-9', expected an encoding that Python knows"):
         TableSection(format="table", file="log.txt", encoding="utf-9")
+
+
+def test_only_named_columns_are_kept_and_rows_beyond_a_part_are_told(tmp_path, monkeypatch):
+    """Files are read in parts: what a row holds beyond the poses never takes memory for the whole file."""
+    monkeypatch.setattr(text_file, "_ROWS_AT_ONCE", 2)
+    times = [f"{1_700_000_000 + number}.25" for number in range(5)]
+    path = tmp_path / "log.txt"
+    path.write_text(rows(",", times).replace("\n", ",7,x\n"))
+    section = TableSection(format="table", file="log.txt", **BARE)
+    table = text_file.read_text(path, section, list("1234567"), [])
+    assert list(table.cells.columns) == list("1234567")
+    assert list(table.names) == list("123456789")
+    assert len(read_navigation(section, tmp_path).log.time_us) == 5
+    path.write_text(path.read_text().replace("4.25,10", "4.25,ten"))
+    with pytest.raises(InputError, match=r"log.txt, row 5, 2: found 'ten', expected a number"):
+        read_navigation(section, tmp_path)
+    path.write_text(rows(",", times) + "1,2\n1,2,3,4,5,6,7,8\n")
+    with pytest.raises(InputError, match=r"log.txt, line 7: found 8 cells, expected 7"):
+        read_navigation(section, tmp_path)

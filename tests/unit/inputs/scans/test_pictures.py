@@ -103,8 +103,8 @@ def _truncated(path, cube):
             ),
             "an alpha channel, expected grey, RGB",
         ),
-        (lambda path, cube: path.write_bytes(b"II*\0" + bytes(range(200))), "expected a whole PNG or TIFF file"),
-        (lambda path, cube: path.touch(), "expected a whole PNG or TIFF file"),
+        (lambda path, cube: path.write_bytes(b"II*\0" + bytes(range(200))), "expected a whole PNG, TIFF or JPEG file"),
+        (lambda path, cube: path.touch(), "expected a whole PNG, TIFF or JPEG file"),
         (
             lambda path, cube: tifffile.imwrite(path, np.full((4, 3), np.nan, np.float32)),
             "intensities that are no numbers",
@@ -116,3 +116,29 @@ def test_tiff_that_cannot_be_used_is_one_line(tmp_path, cube, write, told):
     with pytest.raises(InputError, match=told) as error:
         read_picture(tmp_path / "scan.tif")
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["scan.jpg", "scan.JPEG"])
+@pytest.mark.parametrize("colour", [False, True])
+def test_jpeg_is_read_and_what_it_costs_is_told(tmp_path, caplog, name, colour):
+    ramp = np.broadcast_to(np.linspace(0, 255, 64).astype(np.uint8)[:, None], (64, 48))
+    picture = np.stack([ramp] * 3, axis=-1) if colour else ramp
+    Image.fromarray(picture).save(tmp_path / name, "JPEG", quality=95)
+    np.testing.assert_allclose(read_picture(tmp_path / name), ramp, atol=3)
+    assert picture_size(tmp_path / name) == (64, 48)
+    assert f"{name}: JPEG: quality 95 costs nothing, quality 50 makes dots half as exact" in caplog.text
+    with pytest.raises(InputError, match=r"found 48 pixels a line, expected 640"):
+        read_picture(tmp_path / name, 640)
+
+
+def test_8_bits_are_told_and_16_are_not(tmp_path, cube, caplog):
+    write_png(tmp_path / "deep.png", cube)
+    tifffile.imwrite(tmp_path / "deep.tif", cube, photometric="rgb")
+    for name in ("deep.png", "deep.tif"):
+        picture_size(tmp_path / name)
+    assert not caplog.text
+    Image.fromarray(cube.astype(np.uint8)).save(tmp_path / "flat.png")
+    tifffile.imwrite(tmp_path / "flat.tif", cube.astype(np.uint8), photometric="rgb")
+    for name in ("flat.png", "flat.tif"):
+        picture_size(tmp_path / name)
+        assert f"{name}: 8 bits a value: dots are as exact where the scene fills the range" in caplog.text
