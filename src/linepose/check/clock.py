@@ -1,5 +1,6 @@
 """Whether camera and navigation tell the same time: overlap, gaps, and the offset that would explain a miss."""
 
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
@@ -13,6 +14,7 @@ _SUBJECT: Final = "time"
 _NAMED_OFFSETS_S: Final = (
     (18, "GPS time against UTC (18 leap seconds since 2017)"),
     (17, "GPS time against UTC (17 leap seconds, 2015 to 2016)"),
+    (619_315_200, "1024 GPS weeks, which a receiver lost"),
     (37, "TAI against UTC"),
     (19, "TAI against GPS time"),
     (315_964_800, "the GPS epoch of 1980 against that of 1970"),
@@ -20,6 +22,15 @@ _NAMED_OFFSETS_S: Final = (
     *((hours * 3600, f"a time zone of {hours} h") for hours in range(1, 15)),
     (86_400, "a day"),
 )
+
+_REMEDIES: Final = {  # of shifts of the camera's clock (s)
+    -18: ", where its stamps count GPS time: source.time_scale: gps",
+    18: ", where its stamps count UTC: source.time_scale: unix",
+    -619_315_200: ", the navigation's: add 619315200 s to its times, or correct its gps_week",
+    619_315_200: ", the camera's: add 619315200 s to its times",
+}
+_HEADER_TOLERANCE_S: Final = 5.0  # headers say whole seconds, and a recorder starts a little later
+_WHOLE_TOLERANCE_S: Final = 2.0
 
 
 def overlap_findings(time_us: Times, navigation_us: Times, what: str) -> list[Finding]:
@@ -40,7 +51,7 @@ def overlap_findings(time_us: Times, navigation_us: Times, what: str) -> list[Fi
     earliest, latest = (start - time_us.min()) / 1e6, (end - time_us.max()) / 1e6
     found = f"no point lies within the {what}: points from {_told(time_us.min())}, {what} from {_told(start)}"
     names = [
-        f"{sign * seconds:+d} s: {name}"
+        f"{sign * seconds:+d} s: {name}{_REMEDIES.get(sign * seconds, '')}"
         for seconds, name in _NAMED_OFFSETS_S
         for sign in (1, -1)
         if earliest <= sign * seconds <= latest
@@ -49,6 +60,25 @@ def overlap_findings(time_us: Times, navigation_us: Times, what: str) -> list[Fi
         return [error(_SUBJECT, found, f"correct the camera's clock; these shifts fit: {'; '.join(names[:3])}")]
     advice = f"correct the camera's clock by {earliest:.1f} to {latest:.1f} s, or bring the log of that day"
     return [error(_SUBJECT, found, advice if earliest <= latest else "bring the log that covers the whole survey")]
+
+
+def header_findings(first_us: Mapping[str, int], header_us: Mapping[str, int]) -> list[Finding]:
+    """Whether scans' headers say the time of the first line that their time stamps say; both are by the scan's name."""
+    late_s = {name: (first_us[name] - header_us[name]) / 1e6 for name in header_us if name in first_us}
+    apart = [name for name, late in late_s.items() if abs(late) > _HEADER_TOLERANCE_S]
+    if not apart:
+        return []
+    late = late_s[apart[0]]
+    names = [
+        f"{name}{_REMEDIES.get(round(np.sign(-late)) * seconds, '')}"
+        for seconds, name in _NAMED_OFFSETS_S
+        if abs(abs(late) - seconds) < _WHOLE_TOLERANCE_S
+    ]
+    alike = f" (and {len(apart) - 1} more scans)" if len(apart) > 1 else ""
+    found = f"{apart[0]}: its time stamps begin {abs(late):.3f} s {'after' if late > 0 else 'before'} the time in its "
+    found += f"header, read as UTC{alike}" + (f": {names[0]}" if names else "")
+    advice = "find out which of the two is right by a landmark, and correct the time stamps if it is the header"
+    return [warning(_SUBJECT, found, advice)]
 
 
 def gap_findings(time_us: Times, navigation_us: Times, maximum_s: float, what: str, key: str) -> list[Finding]:

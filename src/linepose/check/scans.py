@@ -1,15 +1,18 @@
 """Scans, their time stamps and labels, from headers and small files: no image is read."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from linepose.check.finding import Finding, error, numbers, of_fault, of_faults, ok, warning
+from linepose.check.clock import header_findings
+from linepose.check.finding import Finding, Level, error, numbers, of_fault, of_faults, ok, warning
 from linepose.check.labels import sensor_findings
 from linepose.errors import InputError
 from linepose.inputs.labels import read_point_labels
 from linepose.inputs.observed_points import select_scans
+from linepose.inputs.scans import header_time
 from linepose.inputs.scans.line_times import line_times_of
 from linepose.inputs.scans.scan_files import scan_size
 from linepose.inputs.source import ScansSection
@@ -36,7 +39,10 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
     if other:
         found = f"scan {numbers(other)}: {widths[other[0]]} pixels a line, camera.n_pixels is {n_pixels}"
         findings.append(error("scans", found, f"set camera.n_pixels: {widths[other[0]]}, or restore the scans"))
-    if not findings:
+    findings += header_findings(
+        {scans[number].name: int(stamps[0]) for number, stamps in times.items()}, _header_starts(scans.values())
+    )
+    if not any(finding.level == Level.ERROR for finding in findings):
         findings.append(ok("scans", f"{len(scans)} scans of {n_pixels} pixels, a time stamp for each line"))
     if source.points == "detection":
         found = (
@@ -53,6 +59,19 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
         found = f"scan {numbers(unlabelled)}: no label, left out"
         label_findings.append(warning("labels", found, "label it, or add it to source.left_out"))
     return [*findings, *label_findings], points
+
+
+def _header_starts(scans: Iterable[Path]) -> dict[str, int]:
+    """Unix times (us) of the first lines that headers say, by the scan's file name."""
+    starts = {}
+    for path in scans:
+        try:
+            start_us = header_time.start_us(header_time.words_of(path))
+        except InputError:  # told with the scan
+            continue
+        if start_us is not None:
+            starts[path.name] = start_us
+    return starts
 
 
 def _timed(

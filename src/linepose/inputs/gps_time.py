@@ -21,6 +21,7 @@ TimeScale = Literal["gps", "unix"]
 
 GPS_EPOCH_US: Final = 315_964_800_000_000  # 1980-01-06 as Unix time
 WEEK_US: Final = 604_800_000_000
+_OLDEST_DEVICE_US: Final = 1_104_537_600_000_000  # 2005-01-01
 _UNIT_US: Final[dict[TimeUnit, float]] = {"s": 1e6, "ms": 1e3, "us": 1.0, "ns": 1e-3}
 
 log = logging.getLogger(__name__)
@@ -116,6 +117,14 @@ def unix_from_week_of_first(week: int | None, of_week_us: NDArray[np.int64], pla
 def week_at(unix_us: int) -> int:
     """The GPS week in which a Unix time (us) lies."""
     return int(gps_from_unix(unix_us)) // WEEK_US
+
+
+def tell_lost_weeks(unix_us: int, place: str) -> None:
+    """Warn of a time that is older than navigation systems with GPS: the receiver may have lost 1024 weeks."""
+    if unix_us < _OLDEST_DEVICE_US:
+        told = "%s: times of %s, before such devices were built: the receiver may have lost 1024 GPS weeks (%s); add "
+        told += "619315200 s to all its times"
+        log.warning(told, place, _day(unix_us), _day(unix_us + 1024 * WEEK_US))
 
 
 def _total_s(start_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:

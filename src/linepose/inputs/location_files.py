@@ -1,6 +1,5 @@
 """Resonon's location files (.lcf): rows of numbers, read alike for poses and for the time of a scan's first line."""
 
-import logging
 from pathlib import Path
 from typing import Final
 
@@ -13,21 +12,12 @@ from linepose.inputs import gps_time
 from linepose.inputs.gps_time import TimeScale
 
 _FEWEST_COLUMNS: Final = 7
-_OLDEST_DEVICE_US: Final = 1_104_537_600_000_000  # 2005-01-01
-_ROLLOVER_US: Final = 1024 * 7 * 86_400 * 1_000_000
-
-log = logging.getLogger(__name__)
 
 
-def location_unix_us(time_s: Floats, time_scale: TimeScale, path: Path) -> NDArray[np.int64]:
-    """Unix times (us) of the first column; a file that is older than such devices is told."""
+def location_unix_us(time_s: Floats, time_scale: TimeScale) -> NDArray[np.int64]:
+    """Unix times (us) of the first column."""
     time_us = gps_time.microseconds(time_s, "s")
-    unix_us = gps_time.unix_from_gps(time_us) if time_scale == "gps" else time_us
-    if len(unix_us) and unix_us[0] < _OLDEST_DEVICE_US:
-        day, later = (np.datetime64(int(unix_us[0]) + more, "us").astype("M8[D]") for more in (0, _ROLLOVER_US))
-        told = "%s: times of %s, before such devices were built: the receiver may have lost 1024 GPS weeks (%s)"
-        log.warning(told, path, day, later)
-    return unix_us
+    return gps_time.unix_from_gps(time_us) if time_scale == "gps" else time_us
 
 
 def location_rows(path: Path) -> Floats:

@@ -1,11 +1,13 @@
 """Where a platform's observations come from: views whose points were labelled, or scans and a raw log."""
 
+import datetime
 import glob
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, PositiveInt, model_validator
+from pydantic import Field, PositiveFloat, PositiveInt, field_validator, model_validator
 
 from linepose.inputs.navigation.registry import Navigation
 from linepose.settings import Settings
@@ -35,12 +37,32 @@ class ScansSection(Settings):
     )
     scans: str = Field(
         "scans/*.hdr",
-        description="Scans (ENVI headers, PNG, TIFF, JPEG) in the order of the observations, with their time stamps beside.",
+        description="Scans (ENVI headers, PNG, TIFF, JPEG) in the order of the observations, their time stamps beside.",
     )
-    time_stamps: Literal["csv", "resonon", "headwall", "specim"] = Field(
+    time_stamps: Literal["csv", "resonon", "headwall", "specim", "hyspex", "novatel", "rate"] = Field(
         "csv",
         description="Time stamps of a scan's lines: NAME-times.csv (us since 1970), Resonon's NAME.times and NAME.lcf, "
-        "Headwall's frameIndex_N.txt beside raw_N, or Specim's NAME.nav.",
+        "Headwall's frameIndex_N.txt beside raw_N, Specim's NAME.nav, the last column of HySpex's NAME.txt, events in "
+        "the log of a NovAtel receiver (NAME.gps), or a start and a `rate`.",
+    )
+    time_file: str | None = Field(
+        None,
+        description="File of a scan's time stamps beside it under another name, for csv, headwall, hyspex and novatel: "
+        "`{name}` is the scan's name without ending (`{name}_frames.txt`).",
+    )
+    line_rate_hz: PositiveFloat | None = Field(
+        None, description="Lines a second, for `rate`; if not given, fps or framerate of the scan's header."
+    )
+    start_times: dict[str, datetime.datetime] = Field(
+        {},
+        description="Time of the first line by the scan's name, for `rate` (`run-01: 2026-05-01T12:00:00.25Z`); if not "
+        "given, that of the scan's header.",
+    )
+    gps_week: int | None = Field(
+        None, ge=0, description="The GPS week of the scans, for hyspex; if not given, that of the header's date."
+    )
+    event: str | None = Field(
+        None, description="The receiver's message, for novatel (`MARK2TIME`); if not given, the only one in the log."
     )
     time_scale: Literal["unix", "gps"] | None = Field(
         None,
@@ -71,6 +93,17 @@ class ScansSection(Settings):
         "that is named by its path, else those in the log.",
     )
 
+    @field_validator("time_file")
+    @classmethod
+    def _names_the_scan_alone(cls, time_file: str | None) -> str | None:
+        if time_file is not None and re.search(r"[{}]", time_file.replace("{name}", "")):
+            raise ValueError("a file's name in which {name} alone stands in braces, such as {name}_frames.txt")
+        return time_file
+
+    def time_path(self, scan: Path, usual: str) -> Path:
+        """The file of a scan's time stamps: of the name that `time_file` gives, else of the usual one."""
+        return scan.parent / (self.time_file or usual).replace("{name}", scan.stem)
+
     @model_validator(mode="before")
     @classmethod
     def _of_our_own_table(cls, values: Any) -> Any:
@@ -86,6 +119,7 @@ class ScansSection(Settings):
             beside |= {path for scan in scans for suffix in ("*.times", "*.lcf") for path in scan.parent.glob(suffix)}
         elif self.time_stamps == "headwall":
             beside |= {path for scan in scans for path in scan.parent.glob("frameIndex_*.txt")}
+        beside |= {self.time_path(scan, "{name}-times.csv") for scan in scans}
         labels = set(folder.glob(self.labels)) or {folder / self.labels} if self.points == "labels" else set()
         navigation = self.navigation
         log = {folder / navigation} if isinstance(navigation, str) else navigation.files(folder)

@@ -4,12 +4,15 @@ import re
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 import yaml
 
+from linepose.check.clock import overlap_findings
 from linepose.check.finding import Level
 from linepose.check.platform import check_platform
+from linepose.check.scans import scan_findings
 from linepose.config.new_platform import NewPlatform, write_platform
 from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
@@ -146,12 +149,45 @@ def test_what_readers_pass_over_is_told_once(scans):
     settings(scans, source={"navigation": {"format": "table", "file": path.name}, "covariances": "covariances.csv"})
     table = pd.read_parquet(path)
     pd.concat([table[:3], table[2:]]).to_parquet(path, index=False)
-    told = [(one.subject, one.found) for one in check_platform("mine", scans).of(Level.WARNING)]
-    expected = [
-        ("scans", r"observation-01.hdr: no byte order: read as 0, as ENVI does \(and 9 more like it\)"),
-        ("navigation log", r"navigation.parquet: 1 records that repeat the one before are passed over"),
+    told = [
+        one for one in check_platform("mine", scans).of(Level.WARNING) if one.subject in ("scans", "navigation log")
     ]
-    assert len(told) == 2
-    for (subject, found), (its_subject, pattern) in zip(told, expected, strict=True):
-        assert subject == its_subject
-        assert re.search(pattern, found)
+    assert [one.subject for one in told] == ["scans", "navigation log"]
+    assert re.search(r"observation-01.hdr: no byte order: read as 0, .* \(and 9 more like it\)", told[0].found)
+    assert re.search(r"navigation.parquet: 1 records that repeat the one before are passed over", told[1].found)
+
+
+@pytest.mark.parametrize(
+    ("late_s", "found"),
+    [
+        (7_200, r"begin 7200.* s after the time in its header, .* \(and 9 more scans\): a time zone of 2 h"),
+        (18, r"begin 18.* s after .*: GPS time against UTC .* source.time_scale: gps"),
+        (-619_315_200, r"begin 619315200.* before .*: 1024 GPS weeks, .* the camera's: add 619315200 s"),
+        (100, r"begin 100.* s after the time in its header, read as UTC \(and 9 more scans\)$"),
+        (2, None),
+    ],
+)
+def test_time_of_the_header_beside_the_stamps(scans, late_s, found):
+    for header in sorted((scans / "data" / "mine" / "scans").glob("*.hdr")):
+        first_us = int(pd.read_csv(header.with_name(f"{header.stem}-times.csv")).iloc[0, 0])
+        start = pd.Timestamp(first_us - late_s * 1_000_000, unit="us").isoformat()
+        header.write_text(header.read_text() + f"acquisition time = {start}Z\n")
+    told, _ = scan_findings(load_platform(scans / "config" / "platforms", "mine").source, scans / "data" / "mine", 648)
+    mine = [one for one in told if one.subject == "time"]
+    assert len(mine) == (found is not None)
+    assert found is None or re.search(found, mine[0].found)
+
+
+@pytest.mark.parametrize(
+    ("shift_s", "advice"),
+    [
+        (3_600, r"-3600 s: a time zone of 1 h"),
+        (18, r"-18 s: GPS time against UTC .*, where its stamps count GPS time: source.time_scale: gps"),
+        (619_315_200, r"-619315200 s: 1024 GPS weeks, .*, the navigation's: add 619315200 s to its times"),
+        (-619_315_200, r"\+619315200 s: 1024 GPS weeks, .*, the camera's: add"),
+    ],
+)
+def test_shift_between_the_clocks_is_named_with_its_remedy(shift_s, advice):
+    log_us = 1_700_000_000_000_000 + 100_000 * np.arange(100)
+    (told,) = overlap_findings(log_us[20:30] + shift_s * 1_000_000, log_us, "navigation log")
+    assert re.search(advice, told.advice)

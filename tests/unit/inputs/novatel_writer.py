@@ -39,7 +39,7 @@ def ascii_(name, week, second, fields):
     if name.endswith("S"):
         sync, text = "%", f"{name}A,{week},{second:.3f};{','.join(fields)}"
     else:
-        head = f"{name}A,COM1,0,90.0,FINESTEERING,{week},{second:.3f},00000000,{DEFINITIONS[name]:04x},16248"
+        head = f"{name}A,COM1,0,90.0,FINESTEERING,{week},{second:.3f},00000000,{DEFINITIONS.get(name, 0):04x},16248"
         sync, text = "#", f"{head};{','.join(fields)}"
     return f"{sync}{text}*{crc(text.encode()):08x}\r\n".encode()
 

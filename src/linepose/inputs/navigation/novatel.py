@@ -10,9 +10,7 @@ undulation is added.
 
 import logging
 import re
-import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -25,6 +23,7 @@ from linepose.errors import InputError
 from linepose.inputs import axes, gps_time
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, nearest_rows
+from linepose.inputs.novatel_file import UnknownBytes, messages
 
 Row = tuple[float, ...]
 
@@ -32,7 +31,6 @@ _SHORT_NAMES: Final = {"INSPVAS": "INSPVA", "INSSTDEVS": "INSSTDEV", "INSCOVS": 
 _HEAD_BYTES: Final = 4096
 _USABLE: Final = {2, 3, 6, 7}  # high variance, good, free (without GNSS), alignment complete
 _SIGMAS: Final = ("latitude", "longitude", "height", "roll", "pitch", "azimuth")
-_ASCII_CUT: Final = re.compile(rb"[#%][^\r\n]*\*[0-9a-fA-F]{8}\n")  # a message whose CR LF became LF
 _KINDS_OF_COVARIANCES: Final = ("INSCOV", "INSSTDEV", "INSPVAX")  # the fullest first
 
 log = logging.getLogger(__name__)
@@ -81,8 +79,7 @@ FORMAT: Final = NavigationFormat("novatel", NovatelSection, read, recognise=_is_
 
 def read_messages(path: Path) -> Messages:
     """Every message of a log that a pose or its covariance is read from, short and long forms alike."""
-    with _with_line_ends(path) as framed:
-        rows, read, unusable, unknown = _parsed(framed)
+    rows, read, unusable, unknown = _parsed(path)
     if not read:
         remedy = "give a log of INSPVA or INSPVAX messages, or correct source.navigation.format"
         raise InputError(str(path), "no NovAtel message", "an ASCII or binary log", remedy)
@@ -95,15 +92,11 @@ def read_messages(path: Path) -> Messages:
 
 def _parsed(path: Path) -> tuple[dict[str, list[Row]], int, int, int]:
     """Rows by message, and the numbers of messages, of poses without a solution, and of bytes that are no message."""
-    from novatel_edie import UnknownBytes
-    from novatel_edie.oem import FileParser
-
     rows: dict[str, list[Row]] = {}
     unusable = unknown = read = 0
-    parser = FileParser(str(path))
-    for message in parser:
+    for message in messages(path):
         if isinstance(message, UnknownBytes):
-            unknown += len(message.data)
+            unknown += message.count
             continue
         read += 1
         name = getattr(message, "name", "")
@@ -115,26 +108,7 @@ def _parsed(path: Path) -> tuple[dict[str, list[Row]], int, int, int]:
             unusable += 1
             continue
         rows.setdefault(name, []).append(_ROW_OF[name](message))
-    unknown += int(str(parser.flush()))  # what the file ends with and is no whole message
     return rows, read, unusable, unknown
-
-
-@contextmanager
-def _with_line_ends(path: Path) -> Iterator[Path]:
-    """The log itself, or where ASCII messages end in LF alone, as editors leave them, a copy with CR LF.
-
-    The parser finds messages by CR LF, which the check sum does not cover. Binary messages are kept byte by byte.
-    """
-    with path.open("rb") as file:
-        whole = not any(_ASCII_CUT.fullmatch(line) for line in file)
-    if whole:
-        yield path
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder) / path.name
-        with path.open("rb") as file, copy.open("wb") as framed:
-            framed.writelines(line[:-1] + b"\r\n" if _ASCII_CUT.fullmatch(line) else line for line in file)
-        yield copy
 
 
 def _most_numerous(files: Sequence[Messages]) -> str:

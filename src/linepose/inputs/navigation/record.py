@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.inputs import gps_time
 from linepose.inputs.axes import turned, turned_angles
 from linepose.inputs.local_frame import (
     LocalFrame,
@@ -149,6 +150,7 @@ def _joined_poses(parts: Sequence[Poses]) -> Poses:
         _check(part)
     parts = [_without_repeats(part) for part in parts]
     ordered = sorted(parts, key=lambda part: int(part.time_us[0]))
+    gps_time.tell_lost_weeks(int(ordered[0].time_us[0]), ordered[0].place)
     for before, after in pairwise(ordered):
         if after.time_us[0] <= before.time_us[-1]:
             raise InputError(

@@ -44,4 +44,4 @@ def _poses(path: Path, time_scale: TimeScale) -> Poses:
     if rows.shape[1] > _USE_COLUMN:
         rows = rows[rows[:, _USE_COLUMN] != 0]
     euler = rows[:, 1:4] * [-1.0, 1.0, 1.0]
-    return Poses(location_unix_us(rows[:, 0], time_scale, path), rows[:, [5, 4, 6]], euler, str(path))
+    return Poses(location_unix_us(rows[:, 0], time_scale), rows[:, [5, 4, 6]], euler, str(path))

@@ -6,7 +6,6 @@ frames are evenly spaced, and those after the last at the rate of the header (`f
 
 import datetime
 import logging
-import re
 from pathlib import Path
 from typing import Final
 
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 
 from linepose.errors import InputError
 from linepose.inputs.nmea import sentences
-from linepose.inputs.scans.envi_header import header_words
+from linepose.inputs.scans import header_time
 from linepose.inputs.scans.scan_files import scan_size
 
 _SYNCHRONISED: Final = "SPTSMP"
@@ -27,14 +26,14 @@ log = logging.getLogger(__name__)
 
 def specim_times(scan: Path) -> tuple[NDArray[np.int64], Path]:
     """Unix times (us) of a scan's lines, and the file that they are of."""
-    words = header_words(scan) if scan.suffix.lower() == ".hdr" else {}
-    n_lines, rate = scan_size(scan)[0], _rate(words)
+    words = header_time.words_of(scan)
+    n_lines, rate = scan_size(scan)[0], header_time.line_rate_hz(words)
     navigation = scan.with_suffix(".nav")
     if navigation.is_file():
-        frames, times = _synchronised(navigation, _day(words))
+        frames, times = _synchronised(navigation, header_time.day_of(words))
         if len(frames):
             return _between(frames, times, n_lines, rate, navigation), navigation
-    start = _start_us(words)
+    start = header_time.start_us(words)
     if rate is None or start is None:
         found = f"no {navigation.name} with $SPTSMP beside it, and no Start Time and fps in the header"
         raise InputError(str(scan), found, "one of them", "put the file there, or correct source.time_stamps")
@@ -83,28 +82,3 @@ def _between(
     inside = np.interp(lines, frames, times - times[0])
     before, after = np.minimum(lines - frames[0], 0), np.maximum(lines - frames[-1], 0)
     return times[0] + np.rint(inside + (before + after) * step_us).astype(np.int64)
-
-
-def _rate(words: dict[str, str]) -> float | None:
-    """Lines a second of the header."""
-    match = re.match(r"\d+(\.\d+)?", words.get("fps", ""))
-    return float(match[0]) if match and float(match[0]) > 0 else None
-
-
-def _day(words: dict[str, str]) -> datetime.date | None:
-    """The day of the recording: `DATE(yyyy-mm-dd): 2024-05-01`."""
-    match = re.search(r"(\d{4})-(\d\d)-(\d\d)\s*$", words.get("acquisition date", ""))
-    try:
-        return datetime.date(*(int(part) for part in match.groups())) if match else None
-    except ValueError:
-        return None
-
-
-def _start_us(words: dict[str, str]) -> int | None:
-    """Unix time (us) of the first line: `UTC TIME: 10:00:00` of the header's day."""
-    day, match = _day(words), re.search(r"(\d\d):(\d\d):(\d\d(?:\.\d+)?)", words.get("start time", ""))
-    if day is None or match is None:
-        return None
-    midnight = int(datetime.datetime.combine(day, datetime.time(), datetime.UTC).timestamp())
-    of_day_s = (int(match[1]) * 60 + int(match[2])) * 60 + float(match[3])
-    return midnight * 1_000_000 + round(of_day_s * 1e6)

@@ -217,7 +217,7 @@ def test_image_with_a_palette(tmp_path):
         read_scan(path)
 
 
-@pytest.mark.parametrize("name", ["scan.jpg", "scan"])
+@pytest.mark.parametrize("name", ["scan.gif", "scan"])
 def test_unknown_kind_of_file(tmp_path, name):
     (tmp_path / name).write_text("x")
     with pytest.raises(InputError, match="file type"):

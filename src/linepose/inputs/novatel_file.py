@@ -1,0 +1,50 @@
+"""Messages of a NovAtel receiver's log, ASCII and binary mixed as they come, by the vendor's own decoder."""
+
+import re
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+_ASCII_CUT: Final = re.compile(rb"[#%][^\r\n]*\*[0-9a-fA-F]{8}\n")  # a message whose CR LF became LF
+
+
+@dataclass(frozen=True)
+class UnknownBytes:
+    """So many bytes of a log that belong to no message."""
+
+    count: int
+
+
+def messages(path: Path) -> Iterator[Any]:
+    """Every message of a log in its order, and `UnknownBytes` where there is none."""
+    from novatel_edie import UnknownBytes as Unknown
+    from novatel_edie.oem import FileParser
+
+    with _with_line_ends(path) as framed:
+        parser = FileParser(str(framed))
+        for message in parser:
+            yield UnknownBytes(len(message.data)) if isinstance(message, Unknown) else message
+        left = int(str(parser.flush()))  # what the file ends with and is no whole message
+        if left:
+            yield UnknownBytes(left)
+
+
+@contextmanager
+def _with_line_ends(path: Path) -> Iterator[Path]:
+    """The log itself, or where ASCII messages end in LF alone, as editors leave them, a copy with CR LF.
+
+    The parser finds messages by CR LF, which the check sum does not cover. Binary messages are kept byte by byte.
+    """
+    with path.open("rb") as file:
+        whole = not any(_ASCII_CUT.fullmatch(line) for line in file)
+    if whole:
+        yield path
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / path.name
+        with path.open("rb") as file, copy.open("wb") as framed:
+            framed.writelines(line[:-1] + b"\r\n" if _ASCII_CUT.fullmatch(line) else line for line in file)
+        yield copy

@@ -1,0 +1,162 @@
+"""Line times of HySpex, of a receiver's events, of a start and a rate, and of files under other names."""
+
+import datetime
+
+import numpy as np
+import pytest
+
+from linepose.errors import InputError
+from linepose.inputs.scans.line_times import first_time_us, line_times_of
+from linepose.inputs.source import ScansSection
+from linepose.settings import validated
+from unit.inputs import novatel_writer
+
+WEEK, OF_WEEK_S = 2290, 280_800.0  # 2023-11-29 06:00:00 GPS time
+START_US = 315_964_800_000_000 + WEEK * 604_800_000_000 + 280_800_000_000 - 18_000_000
+LINES = np.arange(5) * 10_000
+HEADER = """ENVI
+samples = 8
+lines = 5
+bands = 1
+data type = 12
+interleave = bil
+byte order = 0
+header offset = 0
+"""
+
+
+def scan_of(folder, name="run-01", more=""):
+    (folder / f"{name}.raw").write_bytes(bytes(5 * 8 * 2))
+    path = folder / f"{name}.hdr"
+    path.write_text(HEADER + more)
+    return path
+
+
+def times(scan, **keys):
+    source = validated(ScansSection, {"kind": "scans", "dataset": "x", "scans": "*.hdr"} | keys, "source")
+    return line_times_of(source)(scan, 5)
+
+
+def nav_text(path, first_s=OF_WEEK_S, rows=5, above=""):
+    lines = [f"{row} 10.5 60.25 250.5 0.1 0.2 30.0 {first_s + row * 0.01:.3f}" for row in range(rows)]
+    path.write_text(above + "\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize(
+    ("more", "keys"), [("", {"gps_week": WEEK}), ("acquisition date = DATE(yyyy-mm-dd): 2023-11-29\n", {})]
+)
+@pytest.mark.parametrize("above", ["", "frame lon lat alt roll pitch heading time\n"])
+def test_hyspex_times_are_the_last_column(tmp_path, more, keys, above):
+    scan = scan_of(tmp_path, more=more)
+    nav_text(tmp_path / "run-01.txt", above=above)
+    np.testing.assert_array_equal(times(scan, time_stamps="hyspex", **keys), START_US + LINES)
+    (tmp_path / "run-01.txt").rename(tmp_path / "run-01_nav.txt")
+    found = times(scan, time_stamps="hyspex", time_file="{name}_nav.txt", **keys)
+    np.testing.assert_array_equal(found, START_US + LINES)
+
+
+def event(name, second):
+    fields = [f"{WEEK}", f"{second:.6f}", "0.0", "0.0", "-18.0", "VALID"]
+    if name.endswith("PVA"):
+        place = ["60.25", "10.5", "250.5", "0.1", "0.2", "0.3", "0.1", "0.2", "30.0"]
+        fields = [f"{WEEK}", f"{second:.6f}", *place, "INS_SOLUTION_GOOD"]
+    return novatel_writer.ascii_(name, WEEK, second, fields)
+
+
+def events(path, starts_s, name="MARK2TIME"):
+    path.write_bytes(b"".join(event(name, start_s + row * 0.01) for start_s in starts_s for row in range(5)))
+
+
+@pytest.mark.parametrize("name", ["MARKTIME", "MARK1TIME", "MARK2TIME", "MARK1PVA", "MARK2PVA"])
+def test_events_of_a_receiver_are_lines(tmp_path, name):
+    scan = scan_of(tmp_path)
+    events(tmp_path / "run-01.gps", [OF_WEEK_S], name)
+    np.testing.assert_array_equal(times(scan, time_stamps="novatel"), START_US + LINES)
+    np.testing.assert_array_equal(times(scan, time_stamps="novatel", event=name), START_US + LINES)
+
+
+def test_one_log_of_events_holds_a_burst_a_scan(tmp_path):
+    first, second = scan_of(tmp_path), scan_of(tmp_path, "run-02")
+    events(tmp_path / "drive.gps", [OF_WEEK_S, OF_WEEK_S + 60])
+    keys = {"time_stamps": "novatel", "time_file": "drive.gps"}
+    np.testing.assert_array_equal(times(first, **keys), START_US + LINES)
+    np.testing.assert_array_equal(times(second, **keys), START_US + 60_000_000 + LINES)
+    scan_of(tmp_path, "run-03")
+    with pytest.raises(InputError, match=r"drive.gps: found 2 bursts of events, expected 3, one a scan"):
+        times(first, **keys)
+
+
+@pytest.mark.parametrize("start", ["2026-05-01T12:00:00.25Z", "2026-05-01T14:00:00.25+02:00", "2026-05-01 12:00:00.25"])
+def test_start_and_rate_of_keys(tmp_path, start):
+    keys = {"time_stamps": "rate", "line_rate_hz": 100.0, "start_times": {"run-01": start}}
+    first_us = 1_777_636_800_250_000
+    assert (
+        datetime.datetime.fromtimestamp(first_us / 1e6, datetime.UTC).isoformat() == "2026-05-01T12:00:00.250000+00:00"
+    )
+    np.testing.assert_array_equal(times(scan_of(tmp_path), **keys), first_us + LINES)
+    np.testing.assert_array_equal(times(scan_of(tmp_path), time_scale="gps", **keys), first_us - 18_000_000 + LINES)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "fps = 100\nacquisition date = DATE(yyyy-mm-dd): 2026-05-01\nStart Time = UTC TIME: 12:00:00.25\n",
+        "framerate = 100.000\nacquisition time = 2026-05-01T12:00:00.25Z\n",
+    ],
+)
+def test_start_and_rate_of_the_header(tmp_path, more):
+    source = ScansSection(kind="scans", dataset="x", scans="*.hdr", time_stamps="rate")
+    scan = scan_of(tmp_path, more=more)
+    np.testing.assert_array_equal(times(scan, time_stamps="rate"), 1_777_636_800_250_000 + LINES)
+    assert first_time_us(source, tmp_path) == 1_777_636_800_250_000
+
+
+def test_headwalls_frames_under_another_name(tmp_path):
+    scan = scan_of(tmp_path, "cube_A")
+    rows = "".join(f"{row}\t{START_US + time}\n" for row, time in enumerate(LINES))
+    (tmp_path / "cube_A-frames.txt").write_text("Frame#\tTimestamp\n" + rows)
+    keys = {"time_stamps": "headwall", "time_file": "{name}-frames.txt"}
+    np.testing.assert_array_equal(times(scan, **keys), START_US + LINES)
+    source = ScansSection(kind="scans", dataset="x", scans="*.hdr", **keys)
+    assert tmp_path / "cube_A-frames.txt" in source.files(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("write", "keys", "told"),
+    [
+        (lambda d: None, {"time_stamps": "hyspex"}, r"run-01.hdr: found no such file, expected run-01.txt beside it"),
+        (lambda d: nav_text(d / "run-01.txt"), {"time_stamps": "hyspex"}, r"without the week, .*; set source.gps_week"),
+        (
+            lambda d: (d / "run-01.txt").write_text("1 2 3\n"),
+            {"time_stamps": "hyspex", "gps_week": WEEK},
+            r"run-01.txt, row 1: found '1 2 3', expected 8 numbers",
+        ),
+        (lambda d: None, {"time_stamps": "rate"}, r"found no rate of the lines, .*; set source.line_rate_hz"),
+        (lambda d: None, {"time_stamps": "rate", "line_rate_hz": 9.0}, r"; add run-01 to source.start_times"),
+        (
+            lambda d: events(d / "run-01.gps", [OF_WEEK_S]),
+            {"time_stamps": "novatel", "event": "MARK1TIME"},
+            r"run-01.gps: found events MARK2TIME, expected MARK1TIME",
+        ),
+        (
+            lambda d: None,
+            {"time_file": "{number}.txt"},
+            r"time_file: found '\{number\}.txt', expected a file's name in",
+        ),
+    ],
+)
+def test_what_is_missing_is_one_line(tmp_path, write, keys, told):
+    scan = scan_of(tmp_path)
+    write(tmp_path)
+    with pytest.raises(InputError, match=told) as error:
+        times(scan, **keys)
+    assert "\n" not in str(error.value)
+
+
+def test_two_kinds_of_events_are_told(tmp_path):
+    scan = scan_of(tmp_path)
+    events(tmp_path / "run-01.gps", [OF_WEEK_S])
+    with (tmp_path / "run-01.gps").open("ab") as file:
+        file.write(event("MARK1TIME", OF_WEEK_S))
+    with pytest.raises(InputError, match=r"found 5 MARK2TIME, 1 MARK1TIME, .*; set source.event to one of"):
+        times(scan, time_stamps="novatel")
