@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 import linepose
-from linepose.cli import check, export, label, new, run, show
+from linepose.cli import check, export, label, new, run, show, target
 from linepose.cli.faults import OneLineFaults
 from linepose.cli.three_numbers import ThreeNumbers
 
@@ -13,7 +13,8 @@ app = typer.Typer(
     name="linepose",
     cls=OneLineFaults,
     help="Where exactly is the line-scan camera on the vehicle, and how sure is that?\n\n"
-    "The way of a platform: **new** writes its file, **label** marks the pattern's points where scans "
+    "The way of a platform: **target** prints a board, **new** writes its file, "
+    "**label** marks the pattern's points where scans "
     "are not labelled yet, **check** tells what is wrong before a run, **run** calibrates, "
     "**show** tells the pose, **export** writes it for the robot.",
     no_args_is_help=True,
@@ -40,6 +41,7 @@ def options(
 
 
 app.command(name="new", cls=ThreeNumbers)(new.new)
+app.command(name="target")(target.target)
 app.command(name="label")(label.label)
 app.command(name="check")(check.check)
 app.command(name="run")(run.run)

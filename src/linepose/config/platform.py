@@ -26,6 +26,8 @@ from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, faults_of, validated
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
 from linepose.survey.hand_measured import HandMeasured
+from linepose.survey.targets.registry import Target
+from linepose.survey.targets.rings import RingsSection
 
 if TYPE_CHECKING:  # what computes is imported when it is needed: configuration is read by every command
     from linepose.likelihood.prior import PosePrior
@@ -96,6 +98,7 @@ class Platform(Settings):
     source: LabelledViewsSection | ScansSection = Field(
         description="Where the observations come from.", discriminator="kind"
     )
+    target: Target = Field(RingsSection(), description="What the scans show: by default the paper's board.")
     simulation: Simulation | None = Field(
         None, description="A simulated survey with a known truth: keys and units in linepose.simulation.settings."
     )

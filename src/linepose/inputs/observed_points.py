@@ -14,7 +14,7 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.labels.labels import check_within
 from linepose.inputs.scans.scan_files import LineTimes, Scan, read_scan
-from linepose.inputs.targets.detect import Detection, detect
+from linepose.inputs.targets.detect import Detection, Detector
 from linepose.inputs.targets.refine import Refine, refine_points
 from linepose.tables import floats, whole_numbers
 
@@ -69,14 +69,14 @@ def refined_points(
 
 
 def detected_points(
-    scans: Mapping[int, Path], refine: Refine, n_pixels: int, line_times: LineTimes | None = None
+    scans: Mapping[int, Path], detector: Detector, n_pixels: int, line_times: LineTimes | None = None
 ) -> pd.DataFrame:
     """Points of every scan in which the board and its ids are found; columns as in `SCAN_POINTS`.
 
     A scan whose ids are in doubt is left out with a warning. Raises InputError naming a scan without a board.
     """
     tables = []
-    for number, path, scan, found in detected_in(scans, refine, n_pixels, line_times):
+    for number, path, scan, found in detected_in(scans, detector, n_pixels, line_times):
         if not found.board_found:
             remedy = f"add {number} to source.left_out, or label the scan"
             raise InputError(str(path), found.doubt, "a scan of the whole board", remedy)
@@ -88,12 +88,12 @@ def detected_points(
 
 
 def detected_in(
-    scans: Mapping[int, Path], refine: Refine, n_pixels: int, line_times: LineTimes | None = None
+    scans: Mapping[int, Path], detector: Detector, n_pixels: int, line_times: LineTimes | None = None
 ) -> Iterator[tuple[int, Path, Scan, Detection]]:
     """Each scan's number, path, lines and what is detected in it, one after the other."""
     for number, path in scans.items():
         scan = read_scan(path, line_times, n_pixels)
-        yield number, path, scan, detect(scan, refine)
+        yield number, path, scan, detector(scan)
 
 
 def scan_points(number: int, scan: Scan, point: NDArray[np.int64], position: Floats) -> pd.DataFrame:

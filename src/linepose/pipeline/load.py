@@ -14,6 +14,7 @@ from linepose.inputs.observed_points import detected_points, refined_points, sel
 from linepose.inputs.scans.line_times import line_times_of
 from linepose.inputs.scans.scan_files import read_scan
 from linepose.inputs.source import LabelledViewsSection, ScansSection
+from linepose.inputs.targets.detectors import detector_of
 from linepose.inputs.targets.refine import METHODS
 from linepose.survey.navigation import NavigationCovariances, associate_covariances
 from linepose.survey.navigation_log import POSE_AT, NavigationLog, associate_poses
@@ -31,7 +32,7 @@ def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
     scans, refine = select_scans(folder, source.scans, source.left_out), METHODS[source.refinement]
     line_times = line_times_of(source)
     if source.points == "detection":
-        return detected_points(scans, refine, n_pixels, line_times)
+        return detected_points(scans, detector_of(platform.target, refine), n_pixels, line_times)
     labels = read_point_labels(folder, source.labels, scans, n_pixels)
     return refined_points(scans, labels, refine, n_pixels, line_times)
 

@@ -26,9 +26,14 @@ CORNER_MARK_SIDE_M: Final = 0.040
 
 def board_points() -> Floats:
     """Centres of the targets in the board frame, by point id; (15, 3) in m."""
-    column = np.arange(N_POINTS) % N_COLUMNS
-    row = np.arange(N_POINTS) // N_COLUMNS
-    column = np.where(row % 2 == 1, N_COLUMNS - 1 - column, column)
-    x = (column - (N_COLUMNS - 1) / 2) * COLUMN_SPACING_M
-    y = (row - (N_ROWS - 1) / 2) * ROW_SPACING_M
-    return np.stack([x, y, np.zeros(N_POINTS)], axis=-1)
+    return to_and_fro(N_ROWS, N_COLUMNS, ROW_SPACING_M, COLUMN_SPACING_M)
+
+
+def to_and_fro(n_rows: int, n_columns: int, row_spacing_m: float, column_spacing_m: float) -> Floats:
+    """Points of a grid around the origin, numbered along x in the first row and back in the next; (n, 3) in m."""
+    point = np.arange(n_rows * n_columns)
+    column, row = point % n_columns, point // n_columns
+    column = np.where(row % 2 == 1, n_columns - 1 - column, column)
+    x = (column - (n_columns - 1) / 2) * column_spacing_m
+    y = (row - (n_rows - 1) / 2) * row_spacing_m
+    return np.stack([x, y, np.zeros(len(point))], axis=-1)

@@ -8,12 +8,15 @@ from PIL import Image
 from linepose.errors import InputError
 from linepose.inputs.labels.labels import read_labels
 from linepose.inputs.observed_points import SCAN_POINTS, detected_points, refined_points, select_scans
+from linepose.inputs.targets.detect import ring_detector
 from linepose.inputs.targets.refine import METHODS
+from linepose.survey.targets.rings import RingsSection
 
 START_US = 1_466_000_000_000_000
 STEP_US = 7519
 SHAPE = (200, 150)
 CENTROID = METHODS["centroid"]
+RINGS = ring_detector(RingsSection(), CENTROID)
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +109,7 @@ def test_fewer_than_two_labelled_observations(folder, pictures):
 
 def test_detection_names_the_scan_it_is_unsure_of(folder, pictures, caplog):
     with caplog.at_level(logging.WARNING):
-        points = detected_points(select_scans(folder, "*.png", []), CENTROID, SHAPE[1])
+        points = detected_points(select_scans(folder, "*.png", []), RINGS, SHAPE[1])
     truth = np.concatenate([pictures[name].truth for name in "ab"])
     np.testing.assert_array_equal(points["observation"], np.repeat([1, 2], 15))
     np.testing.assert_array_equal(points["point"], np.tile(np.arange(15), 2))
@@ -117,17 +120,17 @@ def test_detection_names_the_scan_it_is_unsure_of(folder, pictures, caplog):
 def test_scan_without_a_board_is_named(folder):
     save(folder, "b", np.random.default_rng(0).uniform(400, 900, SHAPE))
     with pytest.raises(InputError, match=r"b\.png: found no board: .*; add 2 to source\.left_out"):
-        detected_points(select_scans(folder, "*.png", []), CENTROID, SHAPE[1])
+        detected_points(select_scans(folder, "*.png", []), RINGS, SHAPE[1])
 
 
 def test_fewer_than_two_detected_observations(folder):
     with pytest.raises(InputError, match="1 of 2 scans with known points"):
-        detected_points(select_scans(folder, "*.png", [2]), CENTROID, SHAPE[1])
+        detected_points(select_scans(folder, "*.png", [2]), RINGS, SHAPE[1])
 
 
 def test_scan_of_another_camera(folder):
     with pytest.raises(InputError, match="found 150 pixels a line, expected 648"):
-        detected_points(select_scans(folder, "*.png", []), CENTROID, 648)
+        detected_points(select_scans(folder, "*.png", []), RINGS, 648)
 
 
 GOOD = "observation,point,u_px,line\n1,0,10,20\n2,14,11.5,21\n"

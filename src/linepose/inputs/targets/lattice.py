@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
-from linepose.inputs.targets.targets import HOLE_RADIUS_M, Targets
-from linepose.survey.pattern import COLUMN_SPACING_M, N_COLUMNS, N_ROWS, ROW_SPACING_M
+from linepose.inputs.targets.ring_board import RingBoard
+from linepose.inputs.targets.targets import Targets
 
-_SHORTEST: Final = 0.70 * COLUMN_SPACING_M / HOLE_RADIUS_M  # of a step, in hole radii
-_LONGEST: Final = 1.45 * ROW_SPACING_M / HOLE_RADIUS_M
+_SHORTEST: Final = 0.70  # of a step, times the shortest spacing
+_LONGEST: Final = 1.45  # times the longest
 _LEAST_SINE: Final = 0.80  # between the two kinds of steps
 _REACH: Final = 0.25  # of a step: how far from its predicted place a candidate may be
 _STEPS: Final = ((1, 0), (0, 1), (-1, 0), (0, -1))
@@ -22,15 +22,15 @@ _STEPS: Final = ((1, 0), (0, 1), (-1, 0), (0, -1))
 Cells = dict[int, tuple[int, int]]
 
 
-def grow_lattice(targets: Targets) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def grow_lattice(targets: Targets, board: RingBoard) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Indices (n,) of the candidates in the largest lattice, and their cells (n, 2), whose smallest are 0."""
     best: Cells = {}
     least = np.inf
     place = targets.centre @ np.linalg.inv(_stretch(targets)).T if len(targets.centre) else targets.centre
     for start in range(len(place)):
-        for across, along in _steps_from(place, start):
+        for across, along in _steps_from(place, start, board):
             cells, error = _grown(place, start, across, along)
-            if _fits_board(cells) and (len(cells), -error) > (len(best), -least):
+            if _fits_board(cells, board) and (len(cells), -error) > (len(best), -least):
                 best, least = cells, error
     index = np.array(sorted(best), dtype=np.int64)
     cell = np.array([best[int(one)] for one in index], dtype=np.int64).reshape(-1, 2)
@@ -44,11 +44,13 @@ def _stretch(targets: Targets) -> Floats:
     return 2 * np.linalg.cholesky(targets.covariance[middle])
 
 
-def _steps_from(place: Floats, start: int) -> list[tuple[Floats, Floats]]:
+def _steps_from(place: Floats, start: int, board: RingBoard) -> list[tuple[Floats, Floats]]:
     """Pairs of steps of about the right lengths, about perpendicular, from one candidate to two others."""
     step = place - place[start]
     length = np.linalg.norm(step, axis=1)
-    near = np.flatnonzero((length > _SHORTEST) & (length < _LONGEST))
+    shortest = _SHORTEST * board.shortest_spacing_m / board.hole_radius_m
+    longest = _LONGEST * board.longest_spacing_m / board.hole_radius_m
+    near = np.flatnonzero((length > shortest) & (length < longest))
     pairs = []
     for first in near:
         for second in near:
@@ -58,9 +60,10 @@ def _steps_from(place: Floats, start: int) -> list[tuple[Floats, Floats]]:
     return pairs
 
 
-def _fits_board(cells: Cells) -> bool:
+def _fits_board(cells: Cells, board: RingBoard) -> bool:
     extent = np.ptp(np.array(list(cells.values())), axis=0) + 1
-    return int(extent.max()) <= N_COLUMNS and int(extent.min()) <= N_ROWS
+    sides = sorted([board.n_rows, board.n_columns])
+    return int(extent.min()) <= sides[0] and int(extent.max()) <= sides[1]
 
 
 def _grown(place: Floats, start: int, across: Floats, along: Floats) -> tuple[Cells, float]:

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from linepose.arrays import Floats
 from linepose.inputs.observed_points import detected_in, scan_points
 from linepose.inputs.targets.accuracy import compare_methods
-from linepose.inputs.targets.detect import Detection
+from linepose.inputs.targets.detect import Detection, ring_detector
 from linepose.inputs.targets.refine import METHODS
+from linepose.survey.targets.rings import RingsSection
 from linepose.tables import flags, floats, texts, whole_numbers
 
 _SCAN: Final = [*whole_numbers("observation", "n_lines"), *floats("range_m", "v_px_per_line")]
@@ -51,7 +52,7 @@ def measure_extraction(
     A label counts for the true point that it is nearest to, whatever id it carries.
     """
     accuracies, detections, points = [], [], []
-    for number, _, scan, found in detected_in(scans, METHODS[chosen], n_pixels):
+    for number, _, scan, found in detected_in(scans, ring_detector(RingsSection(), METHODS[chosen]), n_pixels):
         visible = truth[(truth["observation"] == number) & truth["visible"]]
         exact = visible[_PLACE].to_numpy()
         rough = labels.loc[labels["observation"] == number, _PLACE].to_numpy()

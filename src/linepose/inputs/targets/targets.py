@@ -13,16 +13,12 @@ from scipy import ndimage
 
 from linepose.arrays import Floats
 from linepose.inputs.scans.scan_files import Intensity
-from linepose.survey.pattern import RING_INNER_DIAMETER_M
+from linepose.inputs.targets.ring_board import RingBoard
 
-HOLE_RADIUS_M: Final = RING_INNER_DIAMETER_M / 2
 _LEVELS: Final = np.geomspace(0.08, 0.7, 8)  # of the range of intensities
 _SMALLEST_HOLE_PX: Final = 9
 _FILLS_ELLIPSE: Final = (0.75, 1.15)  # area over that of the ellipse with the same moments
-# radii in hole radii, and what is there: hole, ring, gap to the next ring
-_DARK_INSIDE: Final = 0.6
-_BRIGHT: Final = 1.28
-_DARK_OUTSIDE: Final = 1.88
+_DARK_INSIDE: Final = 0.6  # in hole radii: within the hole, beyond the dot
 _N_ANGLES: Final = 16
 _DARKEST: Final = 0.5  # of the ring's brightness: what a ring has inside and outside
 _FULL_CIRCLE: Final = 0.7  # share of a ring's circumference that must look so
@@ -41,15 +37,15 @@ class Targets:
         return Targets(self.centre[index], self.covariance[index], self.score[index])
 
 
-def find_targets(intensity: Intensity) -> Targets:
-    """All ring-like things in an image (L, P), each once, the best first."""
+def find_targets(intensity: Intensity, board: RingBoard) -> Targets:
+    """All things like a board's rings in an image (L, P), each once, the best first."""
     low, high = float(intensity.min()), float(ndimage.uniform_filter(intensity, 3).max())
-    found = [_holes(intensity, low + share * (high - low)) for share in _LEVELS]
+    found = [_holes(intensity, low + share * (high - low), board) for share in _LEVELS]
     targets = Targets(*(np.concatenate([getattr(one, name) for one in found]) for name in Targets.__annotations__))
     return _once(targets.select(np.argsort(-targets.score, kind="stable")))
 
 
-def _holes(intensity: Intensity, level: float) -> Targets:
+def _holes(intensity: Intensity, level: float, board: RingBoard) -> Targets:
     """Elliptic dark regions at one level, kept where a ring surrounds them."""
     label, n_regions = ndimage.label(intensity < level)
     border = np.unique(np.concatenate([label[0], label[-1], label[:, 0], label[:, -1]]))
@@ -69,12 +65,12 @@ def _holes(intensity: Intensity, level: float) -> Targets:
     fills = n / (4 * np.pi * np.sqrt(np.linalg.det(covariance)))
     elliptic = np.flatnonzero((fills > _FILLS_ELLIPSE[0]) & (fills < _FILLS_ELLIPSE[1]))
     centre, covariance = centre[elliptic], covariance[elliptic]
-    score = ring_score(intensity, centre, covariance)
+    score = ring_score(intensity, centre, covariance, board)
     ringed = np.flatnonzero(score >= _FULL_CIRCLE)
     return Targets(centre, covariance, score).select(ringed)
 
 
-def ring_score(intensity: Intensity, centre: Floats, covariance: Floats) -> Floats:
+def ring_score(intensity: Intensity, centre: Floats, covariance: Floats, board: RingBoard) -> Floats:
     """Share of the circumference with a bright ring between two dark ones; centres (K, 2), holes (K, 2, 2) to (K,)."""
     angle = 2 * np.pi * np.arange(_N_ANGLES) / _N_ANGLES
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -84,7 +80,7 @@ def ring_score(intensity: Intensity, centre: Floats, covariance: Floats) -> Floa
         position = centre[:, None] + radius * np.einsum("kij,aj->kai", spread, circle)
         return ndimage.map_coordinates(intensity, [position[..., 1], position[..., 0]], order=1, mode="nearest")
 
-    inside, ring, outside = around(_DARK_INSIDE), around(_BRIGHT), around(_DARK_OUTSIDE)
+    inside, ring, outside = (around(one) for one in (_DARK_INSIDE, board.bright_radius, board.dark_radius))
     ringed = (inside < _DARKEST * ring) & (outside < _DARKEST * ring)
     return np.asarray(ringed.mean(axis=1))
 

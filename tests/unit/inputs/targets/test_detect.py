@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from linepose.inputs.scans.scan_files import Scan
 from linepose.inputs.targets.detect import detect
 from linepose.inputs.targets.refine import METHODS
+from linepose.survey.targets.rings import RingsSection
 
 TURN = np.deg2rad(20)
 ROTATED = 330 * np.array([[np.cos(TURN), -np.sin(TURN)], [np.sin(TURN), np.cos(TURN)]])
@@ -84,3 +86,38 @@ def test_noise_of_a_dim_scan(drawn):
     found = detected(picture)
     assert len(found.point) >= 12
     np.testing.assert_allclose(found.u_px, picture.truth[found.point, 0], atol=0.5)
+
+
+OTHER_BOARDS = {
+    "4 x 7": RingsSection.scaled(4, 7, 0.10),
+    "7 x 4, mirrored": RingsSection.scaled(7, 4, 0.10),
+    "2 x 3": RingsSection.scaled(2, 3, 0.20),
+    "6 x 5, wide rows, thin rings": RingsSection(
+        rows=6, columns=5, row_spacing_m=0.13, column_spacing_m=0.11, ring_outer_diameter_m=0.1
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OTHER_BOARDS)
+def test_rings_of_any_rows_and_columns(name):
+    section = OTHER_BOARDS[name]
+    white = section.artwork().picture(0.002, 0.02).astype(np.float32)
+    light = ndimage.zoom(ndimage.uniform_filter(0.05 + 0.75 * white, 3), (1.5, 0.8), order=1)
+    scale = (np.array(light.shape) - 1) / (np.array(white.shape) - 1)
+    truth = (section.points()[:, :2] / 0.002 + (np.array(white.shape[::-1]) - 1) / 2) * scale[::-1]
+    if "mirrored" in name:
+        light, truth = light[:, ::-1].copy(), truth * [-1, 1] + [light.shape[1] - 1, 0]
+    found = detect(Scan((4000 * light).astype(np.float32), np.arange(len(light)), "scan"), METHODS["centroid"], section)
+    assert found.doubt == ""
+    np.testing.assert_array_equal(found.point, np.arange(len(truth)))
+    np.testing.assert_allclose(found.position, truth, atol=0.5)
+
+
+def test_rows_taken_for_columns_are_doubtful(drawn):
+    found = detect(
+        Scan(drawn([[0, 250], [420, 0]], [150, 200]).intensity, np.arange(400), "scan"),
+        METHODS["centroid"],
+        RingsSection(rows=2, columns=9),
+    )
+    assert found.doubt != ""
+    assert len(found.point) == 0

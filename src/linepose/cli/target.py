@@ -1,0 +1,125 @@
+"""`linepose target`: a target to print, true to scale, and its description for a platform's file."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from linepose.survey.targets.base import GridSection
+
+
+def _tell_kinds(asked: bool) -> None:
+    if asked:
+        from linepose.survey.targets.registry import KINDS
+
+        for name, section in KINDS.items():
+            typer.echo(f"{name:12s}{section.title}")
+        raise typer.Exit
+
+
+def target(
+    kind: Annotated[str, typer.Option(help="One of those that --list tells.")] = "rings",
+    rows: Annotated[
+        int | None, typer.Option(min=1, help="Rows of rings, dots, squares or tags.", show_default="of the kind")
+    ] = None,
+    columns: Annotated[int | None, typer.Option(min=1, help="Columns of them.", show_default="of the kind")] = None,
+    spacing_mm: Annotated[
+        float | None,
+        typer.Option(
+            help="From one to the next, or the side of a square (mm); all else is in proportion.",
+            show_default="of the kind",
+        ),
+    ] = None,
+    described: Annotated[
+        Path | None,
+        typer.Option("--described", metavar="FILE", help="A description to print instead: a file with `target:`."),
+    ] = None,
+    paper: Annotated[
+        str | None,
+        typer.Option(help="A4 to A0, letter, ..., or width x height in mm.", show_default="A1, or none with --tile"),
+    ] = None,
+    tile: Annotated[
+        str | None, typer.Option(metavar="PAPER", help="Spread it over sheets of this paper, to be glued.")
+    ] = None,
+    range_m: Annotated[
+        float | None, typer.Option(help="From the camera to the target (m): tells whether it will be seen.")
+    ] = None,
+    pixel_mrad: Annotated[
+        float | None, typer.Option(help="What a pixel sees (mrad): its field of view, or its spacing.")
+    ] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", help="PDF to write.")] = Path("target.pdf"),
+    _: Annotated[
+        bool, typer.Option("--list", callback=_tell_kinds, is_eager=True, help="Tell the kinds and end.")
+    ] = False,
+) -> None:
+    """Print a target true to scale, and write its description for a platform's file beside it.
+
+    The default is the paper's board of 3 x 5 rings on A1.
+    """
+    from linepose.output.printing.paper import paper_of
+    from linepose.output.printing.write import target_text, write_pdf
+    from linepose.tables import atomic_write
+
+    chosen = _chosen(kind, rows, columns, spacing_mm, described)
+    sheet = paper_of(paper) if paper else None if tile else paper_of("A1")
+    n_sheets = write_pdf(chosen, output, sheet, paper_of(tile, "--tile") if tile else None)
+    description = output.with_suffix(".yaml")
+    with atomic_write(description) as temporary:
+        temporary.write_text(target_text(chosen), encoding="utf-8")
+    typer.echo(f"wrote {output}: {n_sheets} sheet{'s' if n_sheets > 1 else ''}, and a page on mounting it")
+    typer.echo(f"wrote {description}: the section `target` of the platform's file")
+    if range_m is not None or pixel_mrad is not None:
+        _tell_sizes(chosen, range_m, pixel_mrad)
+
+
+def _chosen(
+    kind: str, rows: int | None, columns: int | None, spacing_mm: float | None, described: Path | None
+) -> "GridSection":
+    from linepose.config.target_file import read_target
+    from linepose.errors import InputError
+    from linepose.survey.targets.base import GridSection
+    from linepose.survey.targets.registry import KINDS, PRINTED
+
+    if described is not None:
+        target = read_target(described)
+        if not isinstance(target, GridSection):
+            raise InputError(f"{described}: target.kind", target.kind, f"one of {', '.join(PRINTED)}", "there is none")
+        return target
+    if kind not in PRINTED:
+        import difflib
+
+        near = difflib.get_close_matches(kind, PRINTED, n=1)
+        remedy = f"did you mean {near[0]}?" if near else f"give --kind {next(iter(PRINTED))}"
+        found = f"{kind}, which has no pattern" if kind in KINDS else repr(kind)
+        raise InputError("--kind", found, f"one of {', '.join(PRINTED)}", remedy)
+    if spacing_mm is not None and not 0 < spacing_mm < 1e4:
+        raise InputError("--spacing-mm", f"{spacing_mm:g}", "a length above 0 and below 10 m", "correct it")
+    try:
+        return PRINTED[kind].scaled(rows, columns, None if spacing_mm is None else round(spacing_mm / 1e3, 9))
+    except InputError as fault:
+        fields = PRINTED[kind].model_fields
+        given = f"{rows or fields['rows'].default} rows and {columns or fields['columns'].default} columns"
+        raise InputError(f"--kind {kind}", given, fault.expected, "change --rows or --columns") from None
+
+
+def _tell_sizes(target: "GridSection", range_m: float | None, pixel_mrad: float | None) -> None:
+    from linepose.errors import InputError
+    from linepose.output.printing.seen import size_rows, spacing_for
+
+    for option, value in (("--range-m", range_m), ("--pixel-mrad", pixel_mrad)):
+        if value is None or not value > 0:
+            found = "nothing" if value is None else f"{value:g}"
+            raise InputError(option, found, "a number above 0", "give both --range-m and --pixel-mrad")
+    assert range_m is not None
+    assert pixel_mrad is not None
+    typer.echo(f"from {range_m:g} m a pixel sees {range_m * pixel_mrad:.1f} mm:")
+    too_small = False
+    for name, size_m, needed_m in size_rows(target, range_m, pixel_mrad * 1e-3):
+        verdict = "large enough" if size_m >= needed_m else "too small"
+        too_small |= size_m < needed_m
+        typer.echo(f"  {name} {size_m * 1e3:.1f} mm, at least {needed_m * 1e3:.1f} mm: {verdict}")
+    if too_small:
+        typer.echo(
+            f"  give --spacing-mm {spacing_for(target, target.spacing, range_m, pixel_mrad * 1e-3)} or come closer"
+        )

@@ -1,0 +1,43 @@
+"""Whether a target fits the paper, and which nearest one would."""
+
+from typing import Final
+
+from linepose.errors import InputError
+from linepose.output.printing.paper import Paper, smallest_paper
+from linepose.survey.targets.artwork import Artwork
+from linepose.survey.targets.base import GridSection
+
+_SMALLEST_MM: Final = 1
+
+
+def check_fits(target: GridSection, artwork: Artwork, paper: Paper) -> None:
+    """Raise InputError where the artwork does not fit the paper, with the spacing and the paper that would."""
+    width, height = artwork.width_m * 1e3, artwork.height_m * 1e3
+    if paper.holds(width, height):
+        return
+    remedies = []
+    spacing = _largest_spacing_mm(target, paper)
+    if spacing is not None:
+        remedies.append(f"--spacing-mm {spacing}")
+    larger = smallest_paper(width, height)
+    if larger is not None:
+        remedies.append(f"--paper {larger.name}")
+    remedies.append("--tile A4 without --paper")
+    inner = paper.laid_for(width, height).inner_mm
+    raise InputError(
+        f"{target.kind}, {target.rows} rows and {target.columns} columns {target.spacing * 1e3:g} mm apart",
+        f"a print of {width:.0f} x {height:.0f} mm",
+        f"at most {inner[0]:.0f} x {inner[1]:.0f} mm, {paper.name} less its margin",
+        f"give {' or '.join(remedies)}",
+    )
+
+
+def _largest_spacing_mm(target: GridSection, paper: Paper) -> int | None:
+    """The largest spacing in whole mm at which a target in proportion fits; None where even the smallest does not."""
+    low, high = 0, int(target.spacing * 1e3) + 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        field = type(target).scaled(target.rows, target.columns, middle / 1e3).artwork()
+        assert field is not None
+        low, high = (middle, high) if paper.holds(field.width_m * 1e3, field.height_m * 1e3) else (low, middle)
+    return low if low >= _SMALLEST_MM else None

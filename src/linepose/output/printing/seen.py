@@ -1,0 +1,17 @@
+"""How large the details of a print must be for a camera that looks at them from a range."""
+
+import math
+
+from linepose.survey.targets.base import TargetSection
+
+
+def size_rows(target: TargetSection, range_m: float, pixel_rad: float) -> list[tuple[str, float, float]]:
+    """Each detail: its name, its size, and what it must have for pixels that see `pixel_rad` at `range_m` (m)."""
+    footprint_m = range_m * pixel_rad
+    return [(detail.name, detail.size_m, detail.n_pixels * footprint_m) for detail in target.details()]
+
+
+def spacing_for(target: TargetSection, spacing_m: float, range_m: float, pixel_rad: float) -> int:
+    """The smallest spacing in whole mm at which a target in proportion is seen."""
+    factor = max(needed / size for _, size, needed in size_rows(target, range_m, pixel_rad))
+    return math.ceil(round(spacing_m * factor * 1e3, 6))

@@ -1,0 +1,1 @@
+"""What a survey looks at: targets of several kinds, one a file, and the registry of them."""

@@ -1,0 +1,111 @@
+"""What every kind of target has: its points, what is printed of it, and how it is found."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, PositiveFloat, PositiveInt
+
+from linepose.arrays import Floats
+from linepose.settings import Settings
+from linepose.survey.targets.artwork import Artwork
+
+Picture = NDArray[np.uint8]  # (H, W), as seen from the board's front
+Feature = Literal["dot", "corner"]
+
+
+@dataclass(frozen=True)
+class Found:
+    """Points seen in a picture: rows (n,) of the target's points, and places (n, 2), column and row of the picture."""
+
+    row: NDArray[np.int64]
+    place: Floats
+
+
+@dataclass(frozen=True)
+class Detail:
+    """The smallest thing of a print that must be seen: what it is, its size (m), and how many pixels it takes."""
+
+    name: str
+    size_m: float
+    n_pixels: float
+
+
+class TargetSection(Settings):
+    """What a target is described by. `kind` names it, `title` says what it is in a few words."""
+
+    kind: str
+    title: ClassVar[str]
+    feature: ClassVar[Feature | None] = None  # what a point is in the picture
+
+    def points(self) -> Floats:
+        """Points in the board frame, in the order of `ids`; (n, 3) in m."""
+        raise NotImplementedError
+
+    def ids(self) -> tuple[int | str, ...]:
+        """Names of the points, in the order of `points`."""
+        return tuple(range(len(self.points())))
+
+    def artwork(self) -> Artwork | None:
+        """What is printed; None where there is no pattern."""
+        return None
+
+    def details(self) -> tuple[Detail, ...]:
+        """What of the print must be seen."""
+        return ()
+
+
+class GridSection(TargetSection):
+    """A target of rows and columns that can be printed."""
+
+    rows: PositiveInt
+    columns: PositiveInt
+
+    @classmethod
+    def scaled(cls, rows: int | None, columns: int | None, spacing_m: float | None) -> Self:
+        """A target with all its dimensions in proportion to the spacing; what is None is as by default."""
+        raise NotImplementedError
+
+    @property
+    def spacing(self) -> float:
+        """From one column to the next (m): what `scaled` takes."""
+        raise NotImplementedError
+
+
+class RectifiedSection(GridSection):
+    """A grid that is found in scans which are rectified first, on a surface that this says roughly."""
+
+    surface: Literal["ground", "upright"] = Field(
+        "ground",
+        description="What the target lies on or hangs at: flat ground, or a plane that faces the camera. A rough "
+        "distance is enough.",
+    )
+    distance_m: PositiveFloat = Field(
+        1.0,
+        description="To that surface (m): of the ground below the body's origin, or of an upright target in front of "
+        "the camera.",
+    )
+
+    def find(self, picture: Picture) -> Found | None:
+        """The points seen in a picture that shows the target without much distortion; None where it is not seen."""
+        raise NotImplementedError
+
+    def symmetries(self) -> list[NDArray[np.int64]]:
+        """Ways to number the points (n,) that look alike when the board is turned; the plain one first."""
+        return [np.arange(len(self.points()))]
+
+
+def grid_points(n_rows: int, n_columns: int, row_spacing_m: float, column_spacing_m: float) -> Floats:
+    """Points of a grid around the origin, row by row; (rows x columns, 3) in m."""
+    row, column = np.indices((n_rows, n_columns)).reshape(2, -1)
+    x = (column - (n_columns - 1) / 2) * column_spacing_m
+    y = (row - (n_rows - 1) / 2) * row_spacing_m
+    return np.stack([x, y, np.zeros(len(x))], axis=-1)
+
+
+def turns_of_grid(n_rows: int, n_columns: int, half_turn: bool, quarter_turn: bool) -> list[NDArray[np.int64]]:
+    """Numberings of a grid's points (n,) after the turns that it looks alike in, the plain one first."""
+    plain = np.arange(n_rows * n_columns).reshape(n_rows, n_columns)
+    turns = [0, *([2] if half_turn else []), *([1, 3] if quarter_turn and n_rows == n_columns else [])]
+    return [np.rot90(plain, turn).ravel() for turn in turns]
