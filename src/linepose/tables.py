@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 from linepose.errors import InputError
 
 _MARK: Final = b"linepose"
+_NAMES: Final = {b"names": b"of points"}
 _marks: dict[bytes, bytes] = {}
 
 
@@ -53,7 +54,7 @@ def write_table(table: pd.DataFrame, path: Path | str, schema: pa.Schema) -> Non
     Raises InputError where it does not fit.
     """
     try:
-        arrow = pa.Table.from_pandas(table, schema=schema, preserve_index=False)
+        arrow = pa.Table.from_pandas(table, schema=_of_its_names(schema, table), preserve_index=False)
     except (KeyError, ValueError, pa.ArrowException) as error:
         found = " ".join(str(argument) for argument in error.args).splitlines()[0]
         raise InputError(str(path), found, f"columns {schema.names} without gaps", "mend the result") from None
@@ -84,6 +85,17 @@ def write_csv(table: pd.DataFrame, path: Path | str) -> None:
         table.to_csv(temporary, index=False, float_format="%.10g", lineterminator="\n")
 
 
+def _of_its_names(schema: pa.Schema, table: pd.DataFrame) -> pa.Schema:
+    """The schema as it is on disk: a column of names of points is text where the table has text in it."""
+
+    def on_disk(field: pa.Field) -> pa.Field:
+        named = field.metadata == _NAMES and not pd.api.types.is_numeric_dtype(table[field.name].dtype)
+        text = named and any(isinstance(name, str) for name in table[field.name])
+        return field.remove_metadata().with_type(pa.string() if text else field.type)
+
+    return pa.schema([on_disk(field) for field in schema])
+
+
 def floats(*names: str) -> list[pa.Field]:
     """Columns of real numbers."""
     return [pa.field(name, pa.float64(), nullable=False) for name in names]
@@ -97,6 +109,11 @@ def optional_floats(*names: str) -> list[pa.Field]:
 def whole_numbers(*names: str) -> list[pa.Field]:
     """Columns of whole numbers."""
     return [pa.field(name, pa.int64(), nullable=False) for name in names]
+
+
+def point_column(name: str = "point") -> pa.Field:
+    """The column of points' names: whole numbers, or text where one of a table's names is."""
+    return pa.field(name, pa.int64(), nullable=False, metadata=_NAMES)
 
 
 def texts(*names: str) -> list[pa.Field]:

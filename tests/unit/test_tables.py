@@ -7,7 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from linepose.errors import InputError
-from linepose.tables import atomic_write, read_table, write_csv, write_table
+from linepose.tables import atomic_write, point_column, read_table, write_csv, write_table
 
 SCHEMA = pa.schema([pa.field("point", pa.int64(), nullable=False), pa.field("u_px", pa.float64(), nullable=False)])
 TABLE = pd.DataFrame({"u_px": [0.1, np.inf, -3.0], "point": [0, 1, 2]})
@@ -29,6 +29,17 @@ def names_in(folder):
 def assert_untouched(path):
     assert path.read_bytes() == OLD
     assert names_in(path.parent) == [path.name]
+
+
+def test_names_of_points_are_numbers_or_text_by_the_table(tmp_path):
+    schema, path = pa.schema([point_column()]), tmp_path / "table.parquet"
+    for names in ([3, 10**12], ["gate", "7"]):
+        write_table(pd.DataFrame({"point": names}), path, schema)
+        assert read_table(path, schema)["point"].tolist() == names
+    plain = tmp_path / "plain.parquet"
+    write_table(pd.DataFrame({"point": [3]}), path, schema)
+    write_table(pd.DataFrame({"point": [3]}), plain, pa.schema([pa.field("point", pa.int64(), nullable=False)]))
+    assert path.read_bytes() == plain.read_bytes()
 
 
 def test_table_returns_in_the_schemas_order(tmp_path):

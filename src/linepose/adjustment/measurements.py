@@ -180,7 +180,7 @@ def _check_finite(
         bad = np.nonzero(~np.isfinite(values).reshape(len(values), -1).all(axis=1))[0]
         if len(bad):
             raise InputError(
-                f"observation {survey.number[row[bad[0]]]}, point {column[bad[0]]}",
+                f"observation {survey.number[row[bad[0]]]}, point {survey.names[column[bad[0]]]}",
                 f"a {name} that is not finite",
                 "finite numbers for every observed point",
                 "correct the navigation record or leave the point out",

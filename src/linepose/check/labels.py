@@ -7,6 +7,7 @@ import pandas as pd
 
 from linepose.check.finding import Finding, error, numbers, ok, warning
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
+from linepose.survey.point_names import in_words
 
 _FEW_POINTS: Final = 4  # of one observation
 _USED_SHARE: Final = 0.25  # of the line, below which labels say little of its ends
@@ -63,8 +64,8 @@ def count_findings(points: pd.DataFrame, minimum_observations: int) -> list[Find
         )
     alone = per_point.index[per_point < 2]
     if len(alone):
-        found = f"point {numbers(alone)}: seen once only, so it says nothing"
-        findings.append(warning(_SUBJECT, found, "label it in other observations too, or check its number"))
+        found = f"point {in_words(alone)}: seen once only, so it says nothing"
+        findings.append(warning(_SUBJECT, found, "label it in other observations too, or check its name"))
     if len(per_view) <= minimum_observations:
         findings.append(
             warning(
@@ -83,8 +84,8 @@ def repeated_findings(points: pd.DataFrame) -> list[Finding]:
     if again.empty:
         return []
     first = again.iloc[0]
-    found = f"{len(again)} points twice in an observation; the first is point {first['point']:g} ({first['place']})"
-    return [error(_SUBJECT, found, "keep one row for each point of a view, and check the points' numbers")]
+    found = f"{len(again)} points twice in an observation; the first is point {first['point']} ({first['place']})"
+    return [error(_SUBJECT, found, "keep one row for each point of a view, and check the points' names")]
 
 
 def pose_findings(points: pd.DataFrame) -> list[Finding]:

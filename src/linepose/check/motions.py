@@ -163,6 +163,7 @@ def _joined(first: Survey, second: Survey) -> Survey:
         covariance=np.concatenate([first.covariance, second.covariance]),
         nav_gap_s=np.concatenate([first.nav_gap_s, second.nav_gap_s]),
         origin_m=first.origin_m,
+        names=first.names,
     )
 
 

@@ -50,7 +50,7 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
         )
         return [*findings, ok("labels", found)], None
     try:
-        labels = read_point_labels(folder, source.labels, scans, n_pixels)
+        labels = read_point_labels(folder, source.labels, scans, n_pixels, source.point_id)
     except InputError as fault:
         return [*findings, of_fault("labels", fault)], None
     label_findings, points = _timed(labels[labels["observation"].isin(times)], times, n_pixels)
@@ -80,7 +80,7 @@ def _timed(
     """Findings on labels of readable scans, and the labels with their times where all lie within their scans."""
     if labels.empty:
         return [error("labels", "no label of a readable scan", "label the scans: observation, point, u_px, line")], None
-    place = [f"observation {o:g}, point {p:g}" for o, p in zip(labels["observation"], labels["point"], strict=True)]
+    place = [f"observation {o:g}, point {p}" for o, p in zip(labels["observation"], labels["point"], strict=True)]
     findings = sensor_findings(labels.assign(place=place), n_pixels)
     count = labels["observation"].map({number: len(stamps) for number, stamps in times.items()}).to_numpy()
     line = labels["line"].to_numpy()

@@ -10,11 +10,11 @@ from linepose.check.finding import Finding, error, of_fault, of_faults
 from linepose.check.labels import pose_findings, repeated_findings, sensor_findings
 from linepose.errors import InputError
 from linepose.inputs.labels.labelled_views import read_labelled_views, select_views
-from linepose.inputs.number_files import check_microseconds, read_numbers
+from linepose.inputs.number_files import check_microseconds, read_named_numbers
 from linepose.inputs.source import LabelledViewsSection
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 
-_COLUMNS: Final = ("point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS)
+_COLUMNS: Final = ("u_px", *POSITION_COLUMNS, *EULER_COLUMNS)
 _WHAT: Final = "time (us), point, u (px), north, east, down (m), roll, pitch, yaw (rad)"
 
 
@@ -47,12 +47,12 @@ def _raw_points(paths: list[Path]) -> tuple[pd.DataFrame | None, list[InputError
     tables, faults = [], []
     for number, path in enumerate(paths, start=1):
         try:
-            time_us, values = read_numbers(path, 1 + len(_COLUMNS), _WHAT)
+            time_us, names, values = read_named_numbers(path, 2 + len(_COLUMNS), _WHAT)
             check_microseconds(time_us, path)
         except InputError as fault:
             faults.append(fault)
             continue
-        table = pd.DataFrame(values, columns=list(_COLUMNS)).assign(observation=number, time_us=time_us)
+        table = pd.DataFrame(values, columns=list(_COLUMNS)).assign(observation=number, time_us=time_us, point=names)
         table["place"] = [f"{path.name}, row {row + 1}" for row in range(len(table))]
         tables.append(table[np.isfinite(table["u_px"])])
     joined = pd.concat(tables, ignore_index=True) if tables else None

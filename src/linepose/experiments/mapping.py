@@ -30,7 +30,7 @@ from linepose.geometry.rotations import (
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS
 from linepose.settings import Settings
 from linepose.survey.observations import POSITION_COLUMNS, POSITION_COVARIANCE_INDICES, Survey
-from linepose.tables import floats, optional_floats, texts, whole_numbers
+from linepose.tables import floats, optional_floats, point_column, texts, whole_numbers
 
 _logger = logging.getLogger(__name__)
 PROJECTED_COLUMNS = ("north_m", "east_m", "down_m")
@@ -41,7 +41,8 @@ _DISTORTION_STEP = 1e-6  # for derivatives by k1 and k2, of which undistort is a
 MAPPING: Final = pa.schema(
     [
         *texts("pose"),
-        *whole_numbers("observation", "point"),
+        *whole_numbers("observation"),
+        point_column(),
         *optional_floats(*PROJECTED_COLUMNS, *PROJECTED_COVARIANCE_COLUMNS),
     ]
 )
@@ -142,7 +143,7 @@ def mapping_table(
                 {
                     "pose": name,
                     "observation": survey.number[row],
-                    "point": column.astype("int64"),
+                    "point": survey.names[column],
                     **{axis: position[:, k] for k, axis in enumerate(PROJECTED_COLUMNS)},
                     **{
                         axes: spread[:, i, j]

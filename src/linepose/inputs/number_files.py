@@ -7,12 +7,25 @@ import numpy as np
 from linepose.arrays import Floats
 from linepose.errors import InputError
 
+Whole = np.ndarray[tuple[int], np.dtype[np.int64]]
 
-def read_numbers(path: Path, n_columns: int, what: str) -> tuple[np.ndarray[tuple[int], np.dtype[np.int64]], Floats]:
+
+def read_numbers(path: Path, n_columns: int, what: str) -> tuple[Whole, Floats]:
     """First column as whole numbers (R,) and the others as floats (R, n_columns - 1); empty cells become NaN.
 
     Raises InputError for a file that is missing or empty, a row of another length, or a cell that is no number.
     """
+    first, _, others = _read(path, n_columns, 1, what)
+    return first, others
+
+
+def read_named_numbers(path: Path, n_columns: int, what: str) -> tuple[Whole, list[str], Floats]:
+    """As `read_numbers`, but the second column is text: whole numbers (R,), text (R), floats (R, n_columns - 2)."""
+    return _read(path, n_columns, 2, what)
+
+
+def _read(path: Path, n_columns: int, n_first: int, what: str) -> tuple[Whole, list[str], Floats]:
+    """First column, text of the second, and the columns after the first `n_first` as floats."""
     if not path.is_file():
         raise InputError(str(path), "no such file", what, "restore it, or correct the platform file")
     try:
@@ -21,8 +34,8 @@ def read_numbers(path: Path, n_columns: int, what: str) -> tuple[np.ndarray[tupl
         raise InputError(str(path), "bytes that are not UTF-8", what, "save the file as UTF-8 text") from None
     if not lines:
         raise InputError(str(path), "an empty file", what, "restore it, or leave it out")
-    first = np.empty(len(lines), dtype=np.int64)
-    others = np.empty((len(lines), n_columns - 1))
+    first, second = np.empty(len(lines), dtype=np.int64), []
+    others = np.empty((len(lines), n_columns - n_first))
     for index, cells in enumerate(line.split(",") for line in lines):
         place = f"{path}, row {index + 1}"
         if len(cells) != n_columns:
@@ -32,15 +45,17 @@ def read_numbers(path: Path, n_columns: int, what: str) -> tuple[np.ndarray[tupl
         except (ValueError, OverflowError):
             remedy = "write the time as a whole number of microseconds"
             raise InputError(f"{place}, column 1", repr(cells[0]), "a whole number", remedy) from None
-        for column, cell in enumerate(cells[1:], start=2):
+        second.append(cells[1].strip())
+        for column, cell in enumerate(cells[n_first:]):
             try:
-                others[index, column - 2] = float(cell) if cell.strip() else np.nan
+                others[index, column] = float(cell) if cell.strip() else np.nan
             except ValueError:
-                raise InputError(f"{place}, column {column}", repr(cell), "a number", "mend the cell") from None
-    return first, others
+                where = f"{place}, column {column + n_first + 1}"
+                raise InputError(where, repr(cell), "a number", "mend the cell") from None
+    return first, second, others
 
 
-def check_microseconds(time_us: np.ndarray[tuple[int], np.dtype[np.int64]], path: Path, first_row: int = 1) -> None:
+def check_microseconds(time_us: Whole, path: Path, first_row: int = 1) -> None:
     """Raise InputError where times are not microseconds since 1970 between 1980 and 2100.
 
     `first_row` is the file's row that holds the first of them.

@@ -8,7 +8,6 @@ from typing import Final
 import numpy as np
 import pandas as pd
 import pyarrow as pa
-from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
@@ -16,9 +15,12 @@ from linepose.inputs.labels.labels import check_within
 from linepose.inputs.scans.scan_files import LineTimes, Scan, read_scan
 from linepose.inputs.targets.detect import Detection, Detector
 from linepose.inputs.targets.refine import Refine, refine_points
-from linepose.tables import floats, whole_numbers
+from linepose.survey.point_names import Names
+from linepose.tables import floats, point_column, whole_numbers
 
-SCAN_POINTS: Final = pa.schema([*whole_numbers("observation", "point", "time_us"), *floats("u_px", "line")])
+SCAN_POINTS: Final = pa.schema(
+    [*whole_numbers("observation"), point_column(), *whole_numbers("time_us"), *floats("u_px", "line")]
+)
 _FEWEST_OBSERVATIONS: Final = 2
 
 log = logging.getLogger(__name__)
@@ -59,7 +61,7 @@ def refined_points(
         for row in np.flatnonzero(np.isnan(found[:, 0]))[:1]:
             label = mine.iloc[row]
             raise InputError(
-                f"{path}: label of observation {number}, point {label['point']:g}",
+                f"{path}: label of observation {number}, point {mine['point'].iloc[row]}",
                 f"no dot near pixel {label['u_px']:g}, line {label['line']:g}",
                 "a bright dot on dark print",
                 "correct or remove the label",
@@ -96,7 +98,7 @@ def detected_in(
         yield number, path, scan, detector(scan)
 
 
-def scan_points(number: int, scan: Scan, point: NDArray[np.int64], position: Floats) -> pd.DataFrame:
+def scan_points(number: int, scan: Scan, point: Names, position: Floats) -> pd.DataFrame:
     """Points (n,) of one observation at positions (n, 2) of u and line; columns as in `SCAN_POINTS`."""
     return pd.DataFrame(
         {

@@ -78,6 +78,11 @@ class ScansSection(Settings):
         description="Labels: CSV (observation, point, u_px, line), CVAT for images 1.1 (.xml), or LabelMe (a pattern "
         "of .json files, one a scan).",
     )
+    point_id: str | None = Field(
+        None,
+        description="Where labels hold the point's name: `label`, `group_id` (LabelMe), or the name of an attribute; "
+        "if not given, group_id or an attribute id, point or point_id, else the label.",
+    )
     refinement: Literal["centroid", "peak"] = Field(
         "centroid",
         description="Centre of a dot: intensity-weighted mean, or the enlarged patch's peak as in the paper.",

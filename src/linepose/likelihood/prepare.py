@@ -11,6 +11,7 @@ from linepose.geometry.camera import Camera
 from linepose.likelihood import layout
 from linepose.likelihood.layout import LANES
 from linepose.survey.observations import Survey
+from linepose.survey.point_names import in_words
 
 _logger = logging.getLogger(__name__)
 _PAIRS_6 = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
@@ -31,7 +32,7 @@ def usable(survey: Survey) -> Floats:
     if np.any(seen & ~complete):
         row, point = np.argwhere(seen & ~complete)[0]
         raise InputError(
-            f"observation {survey.number[row]}, point {point}",
+            f"observation {survey.number[row]}, point {survey.names[point]}",
             "a pixel without a finite body pose and covariance",
             "all of them",
             "associate it with navigation or remove it",
@@ -39,7 +40,7 @@ def usable(survey: Survey) -> Floats:
     views = seen.sum(axis=0)
     alone = np.flatnonzero(views < 2)
     if len(alone):
-        _logger.warning("points %s have fewer than two views and do not enter", ", ".join(map(str, alone)))
+        _logger.warning("points %s have fewer than two views and do not enter", in_words(survey.names[alone]))
     return np.where(seen & (views >= 2), 1.0, 0.0)
 
 

@@ -8,7 +8,7 @@ from linepose.estimation.outliers import OUTLIERS
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS
 from linepose.pipeline.stages import DIAGNOSTICS, OPTIMA, POSE
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
-from linepose.tables import floats, optional_floats, texts, whole_numbers
+from linepose.tables import floats, optional_floats, point_column, texts, whole_numbers
 
 STAGE: Final = "inliers"
 CORRECTION_COLUMNS: Final = tuple(f"correction_{name}" for name in (*POSITION_COLUMNS, *EULER_COLUMNS))
@@ -27,7 +27,9 @@ VIEWS: Final = pa.schema(
 )
 MEASUREMENTS: Final = pa.schema(
     [
-        *whole_numbers("observation", "point", "time_us"),
+        *whole_numbers("observation"),
+        point_column(),
+        *whole_numbers("time_us"),
         *floats(*CORRECTION_COLUMNS, "weight"),
         *optional_floats(*NORMALISED_COLUMNS),
     ]

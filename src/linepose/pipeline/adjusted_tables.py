@@ -95,7 +95,7 @@ def measurement_table(survey: Survey, found: Adjustment) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "observation": survey.number[row],
-            "point": point.astype(np.int64),
+            "point": survey.names[point],
             "time_us": survey.time_us[row, point],
             **dict(zip(CORRECTION_COLUMNS, found.corrections[row, point].T, strict=True)),
             "weight": found.measurement_weight[row, point],

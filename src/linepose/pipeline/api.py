@@ -11,11 +11,12 @@ from linepose.arrays import Floats
 from linepose.config.platform import Platform
 from linepose.config.project import Project
 from linepose.errors import InputError
-from linepose.pipeline.calibrate import CalibrationSettings, calibrate, check_rows
+from linepose.pipeline.calibrate import CalibrationSettings, calibrate, checked_rows
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.load import read_observations
 from linepose.pipeline.project_folder import find_project, load_platform_project
 from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
+from linepose.survey.point_names import WHAT, nameless, point_names
 
 
 def observations_from_arrays(
@@ -34,7 +35,7 @@ def observations_from_arrays(
     observation : array_like, shape (K,)
         Number of the observation, from 1.
     point : array_like, shape (K,)
-        Number of the pattern's point, from 0.
+        Name of the point: numbers or text, the same in each observation that saw it.
     u_px : array_like, shape (K,)
         Pixel along the scan line, from 0 (px).
     position_m : array_like, shape (K, 3)
@@ -88,7 +89,7 @@ def observations_from_arrays(
     _check_covariances(matrices)
     columns: dict[str, Floats | np.ndarray] = {
         "observation": _whole("observation", observation, count),
-        "point": _whole("point", point, count),
+        "point": _names(point, count),
         "time_us": _whole("time_us", np.zeros(count) if time_us is None else time_us, count, "give microseconds"),
         "u_px": _shaped("u_px", pixels, (count,)),
     }
@@ -96,7 +97,7 @@ def observations_from_arrays(
     columns |= dict(zip(EULER_COLUMNS, euler.T, strict=True))
     columns |= {name: matrices[:, i, j] for name, (i, j) in zip(COVARIANCE_COLUMNS, COVARIANCE_INDICES, strict=True)}
     table = pd.DataFrame(columns).assign(nav_gap_s=0.0)
-    check_rows(table)
+    table = checked_rows(table)
     return table.sort_values(["observation", "point"], ignore_index=True)
 
 
@@ -117,13 +118,22 @@ def _shaped(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Floats:
     return array
 
 
-def _whole(name: str, values: ArrayLike, count: int, remedy: str = "number views and points") -> np.ndarray:
+def _whole(name: str, values: ArrayLike, count: int, remedy: str = "number the views") -> np.ndarray:
     array = _shaped(name, values, (count,))
     wrong = np.flatnonzero((array != np.rint(array)) | (array < 0) | (array >= 2.0**63))
     if wrong.size:
         row = int(wrong[0])
         raise InputError(f"{name}, row {row}", f"{array[row]:g}", "a whole number, not negative", remedy)
     return np.asarray(values).astype(np.int64)
+
+
+def _names(values: ArrayLike, count: int) -> np.ndarray:
+    array = np.atleast_1d(np.asarray(values, dtype=object))
+    if array.shape != (count,):
+        raise InputError("point", f"shape {array.shape}", f"shape {(count,)}", "give one row a point seen, as in u_px")
+    for row in nameless(array)[:1]:
+        raise InputError(f"point, row {row}", str(array[row]), WHAT, "number or name the points")
+    return point_names(array)
 
 
 def _check_covariances(matrices: Floats) -> None:

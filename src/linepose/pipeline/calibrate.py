@@ -46,6 +46,7 @@ from linepose.survey.observations import (
     check_determined,
     survey_from_table,
 )
+from linepose.survey.point_names import WHAT, nameless, point_names
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
 _STAGE = "inliers"
@@ -177,7 +178,7 @@ def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
         )
     if observations.empty:
         raise InputError("observations", "no row", "one row a point seen", "add observations")
-    check_rows(observations)
+    observations = checked_rows(observations)
     off_line = np.flatnonzero(~observations["u_px"].between(-1.0, float(n_pixels)))
     if off_line.size:
         raise InputError(
@@ -191,19 +192,25 @@ def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
     return observations if "nav_gap_s" in observations.columns else observations.assign(nav_gap_s=0.0)
 
 
-def check_rows(observations: pd.DataFrame) -> None:
-    """Raise InputError naming the first row with something else than numbers, or that says a point of a view again."""
-    numbers = observations[list(_NEEDED)].apply(pd.to_numeric, errors="coerce")
+def checked_rows(observations: pd.DataFrame) -> pd.DataFrame:
+    """The observations with names of points as `point_names` has them.
+
+    Raises InputError naming the first row with something else than numbers, or that says a point of a view again.
+    """
+    numbers = observations[[name for name in _NEEDED if name != "point"]].apply(pd.to_numeric, errors="coerce")
     wrong = ~np.isfinite(numbers.to_numpy(dtype=float))
-    for name in ("observation", "point"):
-        column = numbers[name].to_numpy(dtype=float)
-        wrong[:, numbers.columns.get_loc(name)] |= (column < 0) | (column != np.floor(column))
-    for row, column in np.argwhere(wrong)[:1]:
-        name = numbers.columns[column]
-        what = "a whole number, not negative" if name in ("observation", "point") else "a finite number"
+    column = numbers["observation"].to_numpy(dtype=float)
+    wrong[:, 0] |= (column < 0) | (column != np.floor(column))
+    faults = [(row, "point", WHAT) for row in nameless(observations["point"])[:1]]
+    for row, place in np.argwhere(wrong)[:1]:
+        what = "a finite number" if place else "a whole number, not negative"
+        faults.append((row, numbers.columns[place], what))
+    for row, name, what in sorted(faults)[:1]:
         raise InputError(
             f"observations, row {row}", f"{name} {observations[name].iloc[row]}", what, "correct or remove the row"
         )
+    observations = observations.assign(point=point_names(observations["point"]))
     for row in np.flatnonzero(observations.duplicated(["observation", "point"]))[:1]:
         found = f"point {observations['point'].iloc[row]} of observation {observations['observation'].iloc[row]} again"
         raise InputError(f"observations, row {row}", found, "each point once a view", "remove one of the rows")
+    return observations

@@ -33,7 +33,7 @@ def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
     line_times = line_times_of(source)
     if source.points == "detection":
         return detected_points(scans, detector_of(platform.target, refine), n_pixels, line_times)
-    labels = read_point_labels(folder, source.labels, scans, n_pixels)
+    labels = read_point_labels(folder, source.labels, scans, n_pixels, source.point_id)
     return refined_points(scans, labels, refine, n_pixels, line_times)
 
 
@@ -103,6 +103,6 @@ def check_readable(platform: Platform, folder: Path) -> str:
     for path in scans.values():
         read_scan(path, line_times)
     if source.points == "labels":
-        read_point_labels(folder, source.labels, scans, platform.camera.n_pixels)
+        read_point_labels(folder, source.labels, scans, platform.camera.n_pixels, source.point_id)
     read_reported(platform, folder)
     return f"{len(scans)} scans"

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from linepose.likelihood.base import Likelihood, Residuals
 from linepose.survey.observations import POSITION_COLUMNS, POSITION_COVARIANCE_INDICES, Survey
-from linepose.tables import floats, optional_floats, texts, whole_numbers
+from linepose.tables import floats, optional_floats, point_column, texts, whole_numbers
 
 _AXES = ("north", "east", "down")
 POINT_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j in POSITION_COVARIANCE_INDICES)
@@ -18,12 +18,13 @@ POINT_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j
 RESIDUALS: Final = pa.schema(
     [
         *texts("stage"),
-        *whole_numbers("observation", "point"),
+        *whole_numbers("observation"),
+        point_column(),
         *floats("error_px", "error_u_px", "error_v_px", "sigma_px"),
     ]
 )
 ESTIMATED_POINTS: Final = pa.schema(
-    [*texts("stage"), *whole_numbers("point"), *floats(*POSITION_COLUMNS), *optional_floats(*POINT_COVARIANCE_COLUMNS)]
+    [*texts("stage"), point_column(), *floats(*POSITION_COLUMNS), *optional_floats(*POINT_COVARIANCE_COLUMNS)]
 )
 
 
@@ -52,7 +53,7 @@ def residual_rows(stage: str, survey: Survey, found: Residuals) -> pd.DataFrame:
         {
             "stage": stage,
             "observation": survey.number[row],
-            "point": column.astype(np.int64),
+            "point": survey.names[column],
             "error_px": found.error_px[row, column],
             "error_u_px": found.error_uv_px[row, column, 0],
             "error_v_px": found.error_uv_px[row, column, 1],
@@ -70,7 +71,7 @@ def point_rows(stage: str, survey: Survey, found: Residuals) -> pd.DataFrame:
         name: covariance[:, i, j]
         for name, (i, j) in zip(POINT_COVARIANCE_COLUMNS, POSITION_COVARIANCE_INDICES, strict=True)
     }
-    return pd.DataFrame({"stage": stage, "point": known.astype(np.int64), **columns})
+    return pd.DataFrame({"stage": stage, "point": survey.names[known], **columns})
 
 
 def intraclass_correlation(residuals: pd.DataFrame, column: str) -> float:

@@ -55,10 +55,11 @@ def associate_covariances(
     index = np.where(nearer, after, before)
     gap_s = np.abs(navigation.time_us[index] - time_us) / 1e6
     if gap_s.max() > maximum_gap_s:
-        worst = points.iloc[int(gap_s.argmax())]
+        worst = int(gap_s.argmax())
+        number, name = (points[column].iloc[worst] for column in ("observation", "point"))
         raise InputError(
-            f"{navigation.source}: observation {worst['observation']:g}, point {worst['point']:g}",
-            f"the covariance nearest to its time {worst['time_us']:.0f} us {gap_s.max():.3f} s away",
+            f"{navigation.source}: observation {number}, point {name}",
+            f"the covariance nearest to its time {time_us[worst]} us {gap_s.max():.3f} s away",
             f"at most {maximum_gap_s:g} s",
             "complete the navigation log, correct the clocks, or raise navigation.maximum_gap_s",
         )

@@ -89,5 +89,5 @@ def associate_poses(points: pd.DataFrame, log: NavigationLog, pose_at: PoseAt, m
 
 
 def _place(log: NavigationLog, points: pd.DataFrame, row: int) -> str:
-    point = points.iloc[row]
-    return f"{log.source}: observation {point['observation']:g}, point {point['point']:g}"
+    number, name = (points[column].iloc[row] for column in ("observation", "point"))
+    return f"{log.source}: observation {number}, point {name}"

@@ -1,12 +1,13 @@
 """What was measured: every observation of the pattern's points, with the body pose and its covariance.
 
-An observation is one view of the whole pattern, numbered from 1 as the paper does. A point that an observation
-lacks is NaN in `u_px`, and everything else of it is ignored. Positions are local: the survey origin is subtracted
+An observation is one view of the points, numbered from 1 as the paper does. Points have names; inside, each is a
+column of the survey, in the order of the names. A point that an observation lacks is NaN in `u_px`, and everything else
+of it is ignored. Positions are local: the survey origin is subtracted
 on reading, because map coordinates of 6e6 m leave too few digits for arithmetic.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -16,7 +17,8 @@ from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.tables import floats, whole_numbers
+from linepose.survey.point_names import Names, point_names
+from linepose.tables import floats, point_column, whole_numbers
 
 POSITION_COLUMNS: Final = ("north_m", "east_m", "down_m")
 EULER_COLUMNS: Final = ("roll_rad", "pitch_rad", "yaw_rad")
@@ -26,11 +28,13 @@ POSITION_COVARIANCE_INDICES: Final = tuple((i, j) for i in range(3) for j in ran
 COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}" for i, j in COVARIANCE_INDICES)
 VARIANCE_COLUMNS: Final = tuple(COVARIANCE_COLUMNS[COVARIANCE_INDICES.index((i, i))] for i in range(6))
 POINT_FIELDS: Final = [
-    *whole_numbers("observation", "point", "time_us"),
+    *whole_numbers("observation"),
+    point_column(),
+    *whole_numbers("time_us"),
     *floats("u_px", *POSITION_COLUMNS, *EULER_COLUMNS),
 ]
 OBSERVATIONS: Final = pa.schema([*POINT_FIELDS, *floats(*COVARIANCE_COLUMNS, "nav_gap_s")])
-_LARGEST_GRID: Final = 2_000_000  # observations times points, of 450 bytes each
+_LARGEST_GRID: Final = 4_000_000  # observations times points, of 450 bytes each
 _RAYS_PER_POINT: Final = 2
 
 
@@ -39,7 +43,8 @@ class Survey:
     """All observations of one platform; N observations of M points.
 
     number (N,), time_us (N, M) int64, u_px (N, M), position_m (N, M, 3) north, east, down from `origin_m` (3,),
-    euler_rad (N, M, 3) roll, pitch, yaw, covariance (N, M, 6, 6) of position and angles, nav_gap_s (N, M).
+    euler_rad (N, M, 3) roll, pitch, yaw, covariance (N, M, 6, 6) of position and angles, nav_gap_s (N, M); names (M,):
+    of the points, 0 to M - 1 if not given.
     """
 
     number: NDArray[np.int64]
@@ -50,6 +55,12 @@ class Survey:
     covariance: Floats
     nav_gap_s: Floats
     origin_m: Floats
+    names: Names = field(default_factory=lambda: np.arange(0))
+
+    def __post_init__(self) -> None:
+        """Points without names are numbered."""
+        if not len(self.names):
+            object.__setattr__(self, "names", np.arange(self.n_points))
 
     @property
     def n_observations(self) -> int:
@@ -58,7 +69,7 @@ class Survey:
 
     @property
     def n_points(self) -> int:
-        """Number of pattern points M."""
+        """Number of points M."""
         return int(self.u_px.shape[1])
 
     def select(self, numbers: Sequence[int]) -> "Survey":
@@ -73,7 +84,8 @@ class Survey:
                 "remove it from the selection",
             )
         index = [rows[int(number)] for number in numbers]
-        return Survey(
+        return replace(
+            self,
             number=self.number[index],
             time_us=self.time_us[index],
             u_px=self.u_px[index],
@@ -81,28 +93,26 @@ class Survey:
             euler_rad=self.euler_rad[index],
             covariance=self.covariance[index],
             nav_gap_s=self.nav_gap_s[index],
-            origin_m=self.origin_m,
         )
 
 
 def survey_from_table(table: pd.DataFrame) -> Survey:
     """The survey that a table like results/NAME/observations.parquet holds, one row an observed point.
 
-    The origin is the mean position rounded to whole metres. Raises InputError for numbers of points that no array can
-    have as its columns.
+    The origin is the mean position rounded to whole metres; points are in the order of their names. Raises InputError
+    where observations times points are too many.
     """
     numbers = np.sort(table["observation"].unique()).astype(np.int64)
-    shape = (len(numbers), int(table["point"].max()) + 1)
+    unique, column = np.unique(point_names(table["point"]), return_inverse=True)
+    shape = (len(numbers), len(unique))
     if shape[0] * shape[1] > _LARGEST_GRID:
-        row, different = int(table["point"].argmax()), table["point"].nunique()
         raise InputError(
-            f"observations, row {row}",
-            f"point {table['point'].iloc[row]}",
-            f"numbers from 0: there are {different} different points",
-            "correct the number, or number the points 0, 1, 2, ...",
+            "observations",
+            f"{shape[0]} observations of {shape[1]} different points",
+            f"at most {_LARGEST_GRID} of one times the other",
+            "leave out points that are seen in few observations",
         )
     row = np.searchsorted(numbers, table["observation"].to_numpy())
-    column = table["point"].to_numpy().astype(int)
     origin = np.round(table[list(POSITION_COLUMNS)].to_numpy().mean(axis=0))
 
     def gridded(values: NDArray[np.float64], trailing: tuple[int, ...] = ()) -> Floats:
@@ -125,6 +135,7 @@ def survey_from_table(table: pd.DataFrame) -> Survey:
         covariance=gridded(covariance, (6, 6)),
         nav_gap_s=gridded(table["nav_gap_s"].to_numpy()),
         origin_m=origin,
+        names=point_names(unique),
     )
 
 
@@ -132,9 +143,9 @@ def table_from_survey(survey: Survey) -> pd.DataFrame:
     """One row an observed point, ordered by observation and point: the inverse of `survey_from_table`."""
     row, column = np.nonzero(np.isfinite(survey.u_px))
     covariance = survey.covariance[row, column]
-    columns: dict[str, NDArray[np.float64] | NDArray[np.int64]] = {
+    columns: dict[str, Floats | Names] = {
         "observation": survey.number[row],
-        "point": column.astype(np.int64),
+        "point": survey.names[column],
         "time_us": survey.time_us[row, column],
         "u_px": survey.u_px[row, column],
     }

@@ -146,9 +146,9 @@ def test_labels_are_read_in_order(tmp_path):
     ("text", "told"),
     [
         (GOOD + "3,1,5,5\n", "row 4, observation: found 3, expected the observations with a scan"),
-        (GOOD + "2,15,5,5\n", "row 4, point: found 15, expected 0 to 14"),
-        (GOOD + "2,-1,5,5\n", "row 4, point: found -1"),
-        (GOOD + "2,1.5,5,5\n", "row 4, point: found 1.5"),
+        (GOOD + "2,,5,5\n", "row 4, point: found nan, expected a whole number from 0, or a name"),
+        (GOOD + "2,-1,5,5\n", "row 4, point: found '-1'"),
+        (GOOD + "2,1.5,5,5\n", "row 4, point: found '1.5'"),
         (GOOD + "2,14,5,5\n", "row 4: found point 14 of observation 2 again"),
         (GOOD + "2,1,left,5\n", "row 4, u_px: found 'left', expected a number"),
         (GOOD + "2,1,,5\n", "row 4, u_px: found .*, expected a number"),

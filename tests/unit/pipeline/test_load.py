@@ -30,8 +30,8 @@ def test_whole_record_is_told_in_numbers(field_data, ladybird):
 def test_view_and_covariances_are_both_read(views, ladybird):
     view = sorted(views.glob("labelled_points/*.csv"))[1]
     whole = view.read_text()
-    rewrite(view, lambda rows: [rows[0].replace(",0,", ",x,"), *rows[1:]])
-    with pytest.raises(InputError, match=r"-split_target_points\.csv, row 1, column 2: found 'x'"):
+    rewrite(view, lambda rows: [rows[0].replace(",0,", ",-1,"), *rows[1:]])
+    with pytest.raises(InputError, match=r"-split_target_points\.csv, row 1, column 2: found point '-1'"):
         check_readable(ladybird, views)
     view.write_text(whole)
     rewrite(views / "nav_covs.csv", lambda rows: [rows[1], rows[0], *rows[2:]])

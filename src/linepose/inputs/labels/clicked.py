@@ -9,10 +9,12 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from linepose.errors import InputError
-from linepose.survey.pattern import N_POINTS
+from linepose.errors import InputError, quoted
+from linepose.survey.point_names import WHAT, point_name, point_names
 
 _CENTRE: Final = 0.5  # of the first pixel, counted from the picture's corner
+_NUMBERED: Final = re.compile(r"(?:#|(?:point|pt|p|id)[\s_#.:-]*)?(\d{1,9})", re.IGNORECASE)
+IDS: Final = ("group_id", "id", "point", "point_id", "point id")  # places that are known to hold names
 _INTERLEAVES: Final = {".bil", ".bip", ".bsq"}
 
 
@@ -20,7 +22,7 @@ _INTERLEAVES: Final = {".bil", ".bip", ".bsq"}
 class Clicked:
     """Text and place (x, y) of a label, from the corner of a picture of this name and width; `where` for messages.
 
-    `given` are the other places that may hold the point's id: name ("group_id") and text.
+    `given` are the other places that may hold the point's name: what each is called ("group_id"), and its text.
     """
 
     text: str
@@ -32,10 +34,15 @@ class Clicked:
     given: tuple[tuple[str, str], ...] = ()
 
 
-def labels_of(clicked: Sequence[Clicked], scans: Mapping[int, Path], n_pixels: int) -> pd.DataFrame:
-    """Labels observation, point, u_px, line, ordered by the first two; raises InputError naming what is no label."""
+def labels_of(
+    clicked: Sequence[Clicked], scans: Mapping[int, Path], n_pixels: int, point_id: str | None = None
+) -> pd.DataFrame:
+    """Labels observation, point, u_px, line, ordered by the first two; raises InputError naming what is no label.
+
+    `point_id` is the place of the points' names, see `point_of`.
+    """
     observation_of = _observations(scans)
-    rows: dict[tuple[int, int], tuple[float, float]] = {}
+    rows: dict[tuple[int, int | str], tuple[float, float]] = {}
     for one in clicked:
         observation = observation_of.get(_name(one.picture))
         if observation is None:
@@ -46,13 +53,17 @@ def labels_of(clicked: Sequence[Clicked], scans: Mapping[int, Path], n_pixels: i
             raise InputError(one.where, found, expected, "label the scan's own pixels, neither turned nor scaled")
         if not (np.isfinite(one.x) and np.isfinite(one.y)):
             raise InputError(one.where, f"place {one.x}, {one.y}", "two numbers", "remove the label")
-        key = observation, point_of(one)
+        key = observation, point_of(one, point_id)
         if key in rows:
             found = f"point {key[1]} of {one.picture} again"
-            raise InputError(one.where, found, "each point once a scan", "remove one of the labels")
+            remedy = "remove one of the labels, or say by source.point_id where the points' names stand"
+            raise InputError(one.where, found, "each point once a scan", remedy)
         rows[key] = one.x - _CENTRE, one.y - _CENTRE
-    ordered = sorted((*key, *place) for key, place in rows.items())
-    return pd.DataFrame(ordered, columns=["observation", "point", "u_px", "line"])
+    table = pd.DataFrame(
+        [(*key, *place) for key, place in rows.items()], columns=["observation", "point", "u_px", "line"]
+    )
+    table["point"] = point_names(table["point"])
+    return table.sort_values(["observation", "point"], ignore_index=True)
 
 
 def _observations(scans: Mapping[int, Path]) -> dict[str, int]:
@@ -66,30 +77,35 @@ def _observations(scans: Mapping[int, Path]) -> dict[str, int]:
     return found
 
 
-def point_of(clicked: Clicked) -> int:
-    """The point's id: a number that `given` holds, or at the end of the label ("7", "point 7", "p07").
+def point_of(clicked: Clicked, place: str | None = None) -> int | str:
+    """The point's name, from the one `place` that holds it: `label`, or the name of one that is `given`.
 
-    No other digit counts. Raises InputError where there is no id, or two that differ.
+    Without a place it is the one that is called an id, else the label. "point 7" and "p07" are the number 7; no other
+    digit counts. Raises InputError where there is no name, or it is not plain which of two is meant.
     """
-    found: dict[str, int] = {}
-    expected = f"one number from 0 to {N_POINTS - 1}"
-    for place, text in clicked.given:
-        if not re.fullmatch(r"\d{1,9}", text.strip()):
-            raise InputError(clicked.where, f"{place} {text!r}", expected, "write the point's id there, or clear it")
-        found[place] = int(text)
-    of_label = re.fullmatch(r"(?:[^\W\d]\D*|#)?(\d{1,9})", clicked.text.strip())
-    if of_label:
-        found["label"] = int(of_label[1])
-    if len(set(found.values())) > 1:
-        told = " and ".join(f"{place} {number}" for place, number in found.items())
-        raise InputError(clicked.where, told, "one id of the point", "keep the point's id in one of them")
-    number = next(iter(found.values()), N_POINTS)
-    if number >= N_POINTS:
-        places = {"label": clicked.text, **dict(clicked.given)}
-        told = ", ".join(f"{place} {text!r}" for place, text in places.items())
-        remedy = "write the point's id in the label, LabelMe's group_id or CVAT's attribute id, or remove it"
-        raise InputError(clicked.where, told, expected, remedy)
-    return number
+    places = {"label": clicked.text} | {name.strip().lower(): text for name, text in clicked.given}
+    if place is not None:
+        chosen = {place: places.get(place.lower(), "")}
+    else:
+        chosen = {name: text for name, text in places.items() if name in IDS}
+        if not chosen or _NUMBERED.fullmatch(clicked.text.strip()):
+            chosen["label"] = clicked.text
+    names = {name: _named(text) for name, text in chosen.items()}
+    if len(set(names.values())) > 1:
+        told = " and ".join(f"{name} {quoted(text)}" for name, text in chosen.items())
+        remedy = f"keep it in one of them, or set source.point_id: {next(iter(chosen))}"
+        raise InputError(clicked.where, told, "one name of the point", remedy)
+    found = next(iter(names.values()))
+    if found is None:
+        told = ", ".join(f"{name} {quoted(text)}" for name, text in {**places, **chosen}.items())
+        remedy = "write the point's name there, or say by source.point_id which place holds it"
+        raise InputError(clicked.where, told, WHAT, remedy)
+    return found
+
+
+def _named(text: str) -> int | str | None:
+    numbered = _NUMBERED.fullmatch(text.strip())
+    return point_name(numbered[1] if numbered else text)
 
 
 def _name(file: str) -> str:

@@ -13,7 +13,6 @@ from xml.etree import ElementTree
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked
 
-_IDS: Final = {"id", "point", "point_id", "point id"}
 _HELPERS: Final = {"box", "polygon", "polyline", "mask", "ellipse", "cuboid"}
 
 log = logging.getLogger(__name__)
@@ -62,10 +61,10 @@ def _point(element: ElementTree.Element, where: str, image: ElementTree.Element)
     if len(places) > 1:
         remedy = "draw each point as a shape of its own"
         raise InputError(where, f"{len(places)} places in one shape", "one", remedy)
-    return Clicked(element.get("label", ""), x, y, image.get("name", ""), width, where, _ids(element))
+    return Clicked(element.get("label", ""), x, y, image.get("name", ""), width, where, _attributes(element))
 
 
-def _ids(element: ElementTree.Element) -> tuple[tuple[str, str], ...]:
-    """The attributes that are named as the point's id and are filled in."""
+def _attributes(element: ElementTree.Element) -> tuple[tuple[str, str], ...]:
+    """The attributes that are filled in."""
     named = ((one.get("name", ""), (one.text or "").strip()) for one in element.iter("attribute"))
-    return tuple((f"attribute {name}", text) for name, text in named if name.strip().lower() in _IDS and text)
+    return tuple((name, text) for name, text in named if text)

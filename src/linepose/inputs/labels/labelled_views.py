@@ -9,12 +9,13 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 
-from linepose.errors import InputError
-from linepose.inputs.number_files import check_microseconds, read_numbers
+from linepose.errors import InputError, quoted
+from linepose.inputs.number_files import check_microseconds, read_named_numbers
 from linepose.survey.observations import EULER_COLUMNS, POINT_FIELDS, POSITION_COLUMNS
+from linepose.survey.point_names import WHAT, in_words, nameless, point_name, point_names
 
 POINTS: Final = pa.schema(POINT_FIELDS)
-_COLUMNS: Final = ("time_us", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS)
+_NUMBERS: Final = ("u_px", *POSITION_COLUMNS, *EULER_COLUMNS)
 _WHAT: Final = "time (us), point, u (px), north, east, down (m), roll, pitch, yaw (rad)"
 
 log = logging.getLogger(__name__)
@@ -51,26 +52,31 @@ def read_labelled_views(paths: Sequence[Path], n_pixels: int) -> pd.DataFrame:
                 "name the files so that their order is that of time",
             )
         last_us = view["time_us"].max()
-        views.append(view.sort_values("point").assign(observation=number))
-    return pd.concat(views, ignore_index=True)[["observation", "point", "time_us", "u_px", *_COLUMNS[3:]]]
+        views.append(view.assign(observation=number))
+    table = pd.concat(views, ignore_index=True).assign(point=point_names([name for v in views for name in v["point"]]))
+    return table.sort_values(["observation", "point"], ignore_index=True)[POINTS.names]
 
 
 def _read_view(path: Path, n_pixels: int) -> pd.DataFrame:
     """Points of one view, ordered by time; the index counts the file's rows from 0."""
-    time_us, numbers = read_numbers(path, len(_COLUMNS), _WHAT)
+    time_us, names, numbers = read_named_numbers(path, 2 + len(_NUMBERS), _WHAT)
     check_microseconds(time_us, path)
-    view = pd.DataFrame(numbers, columns=list(_COLUMNS[1:])).assign(time_us=time_us)
+    view = pd.DataFrame(numbers, columns=list(_NUMBERS)).assign(time_us=time_us)
     labelled = ~np.isnan(view["u_px"].to_numpy())
     if not labelled.all():
-        missing = ", ".join(f"{point:g}" for point in view["point"][~labelled])
+        missing = in_words(name for name, has_label in zip(names, labelled, strict=True) if not has_label)
         log.warning("%s: no label for point %s: left out", path, missing)
+    for row in nameless(names):
+        if labelled[row]:
+            place, found = f"{path}, row {row + 1}, column 2", f"point {quoted(names[row])}"
+            raise InputError(place, found, WHAT, "correct the point's id")
     for row in np.flatnonzero(labelled):
         _check_row(view.iloc[row], f"{path}, row {row + 1}", n_pixels)
-    view = view[labelled].astype({"point": np.int64})
+    view = view.assign(point=pd.Series([point_name(name) for name in names], dtype=object))[labelled]
     repeated = np.flatnonzero(view["point"].duplicated())
     if repeated.size:
         again = int(np.flatnonzero(labelled)[repeated[0]])
-        point = int(view["point"].iloc[repeated[0]])
+        point = view["point"].iloc[repeated[0]]
         raise InputError(
             f"{path}, row {again + 1}, column 2",
             f"point {point} again",
@@ -86,10 +92,6 @@ def _check_row(row: pd.Series, place: str, n_pixels: int) -> None:
     if not np.all(np.isfinite(row.to_numpy(dtype=float))):
         name = row.index[~np.isfinite(row.to_numpy(dtype=float))][0]
         raise InputError(f"{place}, {name}", "no number", "a number in each cell of a labelled point", "mend the cell")
-    if row["point"] < 0 or row["point"] != int(row["point"]):
-        raise InputError(
-            f"{place}, column 2", f"point {row['point']:g}", "a whole number from 0", "correct the point id"
-        )
     if not -0.5 <= row["u_px"] <= n_pixels - 0.5:
         raise InputError(
             f"{place}, column 3",

@@ -9,7 +9,7 @@ import pandas as pd
 
 from linepose.errors import InputError, quoted
 from linepose.inputs.scans.scan_files import Scan
-from linepose.survey.pattern import N_POINTS
+from linepose.survey.point_names import WHAT, nameless, point_names
 
 _COLUMNS: Final = ("observation", "point", "u_px", "line")
 
@@ -18,12 +18,12 @@ def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
     """Labels of a CSV file with the heading observation, point, u_px, line, ordered by observation and point.
 
     `numbers` are the observations that there are scans of. Raises InputError naming the row of a label that has no
-    scan, no such point, no number, or is given twice.
+    scan, no name, no number, or is given twice.
     """
     if not path.is_file():
         raise InputError(str(path), "no such file", "approximate labels", "restore it, or set source.points: detection")
     try:
-        table = pd.read_csv(path)
+        table = pd.read_csv(path, dtype={"point": str})
     except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "CSV with a heading", "mend the file") from None
@@ -32,23 +32,23 @@ def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
         expected = f"columns {', '.join(_COLUMNS)}"
         raise InputError(str(path), f"no column {', '.join(missing)}", expected, "name the columns so")
     table = table[list(_COLUMNS)]
-    values = table.apply(pd.to_numeric, errors="coerce")
+    values = table[[name for name in _COLUMNS if name != "point"]].apply(pd.to_numeric, errors="coerce")
     for row, column in np.argwhere(~np.isfinite(values.to_numpy(dtype=float)))[:1]:
-        place = f"{path}, row {row + 2}, {_COLUMNS[column]}"
-        raise InputError(place, quoted(table.iloc[row, column]), "a number", "mend the cell")
-    _check_each(values["observation"], set(numbers), "observation", "the observations with a scan", path)
-    _check_each(values["point"], set(range(N_POINTS)), "point", f"0 to {N_POINTS - 1}", path)
+        name = values.columns[column]
+        raise InputError(f"{path}, row {row + 2}, {name}", quoted(table[name].iloc[row]), "a number", "mend the cell")
+    known = values["observation"].isin(set(numbers)).to_numpy()
+    for row in np.flatnonzero(~known)[:1]:
+        found, remedy = f"{values['observation'].iloc[row]:g}", "correct or remove the label"
+        raise InputError(f"{path}, row {row + 2}, observation", found, "the observations with a scan", remedy)
+    for row in nameless(table["point"])[:1]:
+        place, found = f"{path}, row {row + 2}, point", quoted(table["point"].iloc[row])
+        raise InputError(place, found, WHAT, "correct or remove the label")
+    values["point"] = point_names(table["point"])
     for row in np.flatnonzero(values.duplicated(["observation", "point"]))[:1]:
-        found = f"point {values['point'].iloc[row]:g} of observation {values['observation'].iloc[row]:g} again"
+        found = f"point {values['point'].iloc[row]} of observation {values['observation'].iloc[row]:g} again"
         raise InputError(f"{path}, row {row + 2}", found, "each point once a scan", "remove one of the rows")
-    labels = values.astype({"observation": np.int64, "point": np.int64, "u_px": float, "line": float})
+    labels = values[list(_COLUMNS)].astype({"observation": np.int64, "u_px": float, "line": float})
     return labels.sort_values(["observation", "point"], ignore_index=True)
-
-
-def _check_each(values: pd.Series, known: set[int], column: str, expected: str, path: Path) -> None:
-    for row in np.flatnonzero(~values.isin(known).to_numpy())[:1]:
-        place = f"{path}, row {row + 2}, {column}"
-        raise InputError(place, f"{values.iloc[row]:g}", expected, "correct or remove the label")
 
 
 def check_within(labels: pd.DataFrame, scan: Scan, place: str) -> None:
@@ -58,7 +58,7 @@ def check_within(labels: pd.DataFrame, scan: Scan, place: str) -> None:
     for row in np.flatnonzero(~inside.to_numpy())[:1]:
         label = labels.iloc[row]
         raise InputError(
-            f"{place}: label of observation {label['observation']:g}, point {label['point']:g}",
+            f"{place}: label of observation {label['observation']:g}, point {labels['point'].iloc[row]}",
             f"pixel {label['u_px']:g}, line {label['line']:g}",
             f"a place within the scan's {n_pixels} pixels and {n_lines} lines",
             "correct or remove the label",

@@ -19,11 +19,14 @@ from linepose.inputs.labels.labels import read_labels
 _TOOLS: Final[dict[str, Callable[[Path], list[Clicked]]]] = {".json": read_labelme, ".xml": read_cvat}
 
 
-def read_point_labels(folder: Path, pattern: str, scans: Mapping[int, Path], n_pixels: int) -> pd.DataFrame:
+def read_point_labels(
+    folder: Path, pattern: str, scans: Mapping[int, Path], n_pixels: int, point_id: str | None = None
+) -> pd.DataFrame:
     """Labels observation, point, u_px, line, ordered by the first two, of a file or a pattern of files in `folder`.
 
     `scans` are the scan files by observation; LabelMe and CVAT name the picture of a scan by the scan's own name.
-    Raises InputError naming the file and the label that has no scan, no point of the pattern, or is given twice.
+    `point_id` is the place of the points' names, see `point_of`. Raises InputError naming the file and the label that
+    has no scan, no name, or is given twice.
     """
     if Path(pattern).suffix.lower() == ".csv":
         return read_labels(folder / pattern, list(scans))
@@ -40,4 +43,4 @@ def read_point_labels(folder: Path, pattern: str, scans: Mapping[int, Path], n_p
         clicked += tool(path)
     if not clicked:
         raise InputError(str(paths[0]), "no label", "the points that are seen in each scan", "label the scans")
-    return labels_of(clicked, scans, n_pixels)
+    return labels_of(clicked, scans, n_pixels, point_id)

@@ -72,7 +72,7 @@ def _intensity(path: Path) -> Intensity:
 
 def board_of(view: pd.DataFrame) -> BoardInScan:
     """Where the board lies in a scan, from one observation's points."""
-    known = view[view["point"] < len(board_points())]
+    known = view[view["point"].isin(range(len(board_points())))]
     return fit_board(board_points()[known["point"], :2], known[["u_px", "line"]].to_numpy())
 
 

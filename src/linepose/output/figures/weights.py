@@ -73,7 +73,7 @@ def weights_caption(views: pd.DataFrame, measurements: pd.DataFrame) -> str:
     return (
         "What each observation (bars) and each of its measurements (cells) counts: 1 is as good as the levels say, "
         f"below {DOUBTFUL_WEIGHT:g} (dashes) far off. {told} The lightest observation is {lightest['observation']} "
-        f"({lightest['weight']:.2f}), the lightest measurement point {int(least['point'])} of observation "
+        f"({lightest['weight']:.2f}), the lightest measurement point {least['point']} of observation "
         f"{int(least['observation'])} ({least['weight']:.2f}). None is removed."
     )
 

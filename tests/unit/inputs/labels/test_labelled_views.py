@@ -5,6 +5,7 @@ import pytest
 
 from linepose.errors import InputError
 from linepose.inputs.labels.labelled_views import POINTS, read_labelled_views, select_views
+from linepose.survey.point_names import WHAT
 
 START_US = 1_466_040_439_908_160
 N_PIXELS = 648
@@ -49,6 +50,12 @@ def test_unlabelled_point_is_left_out_and_told_of(view, caplog):
         table = read_labelled_views([path], N_PIXELS)
     assert table["point"].tolist() == [0]
     assert caplog.messages == [f"{path}: no label for point 4, 2: left out"]
+
+
+def test_points_have_names_and_no_number_is_an_index(view):
+    path = view(line("gate"), line("07", 1.0), line("1e6", 2.0))
+    assert read_labelled_views([path], N_PIXELS)["point"].tolist() == ["1000000", "7", "gate"]
+    assert read_labelled_views([view(line("1e6"), line("07", 1.0))], N_PIXELS)["point"].tolist() == [7, 1_000_000]
 
 
 def test_unlabelled_point_may_lack_everything_else(view):
@@ -96,8 +103,16 @@ def test_the_outermost_pixels_edge_belongs_to_the_sensor(view, u):
             "found angles [0.08, -0.01, 112.9], expected radians; convert degrees to radians",
         ),
         (line(0), ", row 2, column 2", "found point 0 again, expected each point once a view; remove one of the rows"),
-        (line(-1), ", row 2, column 2", "found point -1, expected a whole number from 0; correct the point id"),
-        (line(1.5), ", row 2, column 2", "found point 1.5, expected a whole number from 0; correct the point id"),
+        (
+            line(-1),
+            ", row 2, column 2",
+            f"found point '-1', expected {WHAT}; correct the point's id",
+        ),
+        (
+            line(1.5),
+            ", row 2, column 2",
+            f"found point '1.5', expected {WHAT}; correct the point's id",
+        ),
         (
             line(1).rsplit(",", 1)[0],
             ", row 2",

@@ -87,6 +87,18 @@ def test_cvat_attribute_of_its_name_alone_is_the_id(tmp_path, label, name):
     assert read(tmp_path, "a.xml").to_numpy().tolist() == [[1, 7, 10, 20]]
 
 
+def test_points_are_named_by_label_or_the_place_that_a_key_says(tmp_path):
+    shapes = [shape("gate", 1.5, 1.5), shape("p07", 2.5, 2.5), shape("stone 7", 3.5, 3.5), shape("1e6", 4.5, 4.5)]
+    labelme(tmp_path, "run-01", shapes)
+    assert read(tmp_path, "*.json")["point"].tolist() == ["1000000", "7", "gate", "stone 7"]
+    attributes = '<attribute name="quality">2</attribute><attribute name="Mark">7</attribute>'
+    cvat(tmp_path / "a.xml", f'<points label="3" points="10.50,20.50">{attributes}</points>')
+    named = [read_point_labels(tmp_path, "a.xml", SCANS, 640, key)["point"].tolist() for key in (None, "mark", "label")]
+    assert named == [[3], [7], [3]]
+    with pytest.raises(InputError, match=r"label '3', quality '2', mark '7', id '', expected .* by source.point_id"):
+        read_point_labels(tmp_path, "a.xml", SCANS, 640, "id")
+
+
 @pytest.mark.parametrize("skeleton", ["", 'outside="0"'])
 def test_cvat_points_outside_the_picture_are_no_labels(tmp_path, caplog, skeleton):
     points = (
@@ -121,19 +133,17 @@ def test_a_dot_labelled_at_its_middle_is_found_there(tmp_path, drawn, tool):
 @pytest.mark.parametrize(
     ("shapes", "keys", "told"),
     [
-        ([shape("corner", 1, 1)], {}, r"run-01.json, shape 1: found label 'corner', expected one number from 0 to 14"),
-        ([shape("15", 1, 1)], {}, r"found label '15', expected one number from 0 to 14"),
-        ([shape("1-2", 1, 1)], {}, r"found label '1-2'"),
+        ([shape("", 1, 1)], {}, r"run-01.json, shape 1: found label '', expected a whole number from 0, or a name"),
+        ([shape("1.5", 1, 1)], {}, r"found label '1.5', expected a whole number"),
         ([shape("3", 1, 1, "polygon")], {}, r"run-01.json: found no label"),
-        ([shape("dot5mm", 1, 1)], {}, r"found label 'dot5mm', expected one number"),
-        ([shape("-3", 1, 1)], {}, r"found label '-3', expected one number"),
+        ([shape("-3", 1, 1)], {}, r"found label '-3', expected a whole number"),
         (
             [shape("7", 1, 1) | {"group_id": 3}],
             {},
-            r"shape 1: found group_id 3 and label 7, expected one id of the point",
+            r"shape 1: found group_id '3' and label '7', expected one name .* source.point_id: group_id",
         ),
-        ([shape("dot", 1, 1) | {"group_id": 15}], {}, r"found label 'dot', group_id '15', expected one number from 0"),
-        ([shape("dot", 1, 1) | {"group_id": "a"}], {}, r"found group_id 'a', expected one number from 0 to 14"),
+        ([shape("dot", 1, 1) | {"group_id": -1}], {}, r"found label 'dot', group_id '-1', expected a whole number"),
+        ([shape("dot", 1, 1), shape("dot", 2, 2)], {}, r"found point dot of .* again, .* by source.point_id where"),
         ([shape("3", 1, 1), shape("3", 2, 2)], {}, r"shape 2: found point 3 of .* again, expected each point once"),
         ([shape("3", 1, 1)], {"imageWidth": 320}, r"found a picture 320 pixels wide, expected 640, as camera.n_pixels"),
         (
@@ -163,16 +173,11 @@ def test_wrong_labelme_file_is_one_line(tmp_path, shapes, keys, told):
         ),
         ('<points label="3" points="1"/>', {}, r"points 1: found points='1', expected x,y"),
         ('<points label="3" points="nan,1"/>', {}, r"points 1: found place nan, 1.0, expected two numbers"),
-        ('<points label="dot" points="1,2"/>', {}, r"found label 'dot', expected one number"),
-        (
-            '<points label="dot" points="1,2"><attribute name="quality">2</attribute></points>',
-            {},
-            r"found label 'dot', expected one number .* CVAT's attribute id",
-        ),
+        ('<points points="1,2"/>', {}, r"found label '', expected a whole number from 0, or a name"),
         (
             '<points label="3" points="1,2"><attribute name="id">2</attribute></points>',
             {},
-            r"found attribute id 2 and label 3, expected one id",
+            r"found id '2' and label '3', expected one name",
         ),
         ('<box label="3"/>', {}, r"a.xml: found no label"),
         ("", {"root": "opencv"}, r"a.xml: found an element <opencv>, expected CVAT for images 1.1"),
