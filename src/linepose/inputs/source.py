@@ -75,8 +75,8 @@ class ScansSection(Settings):
     )
     labels: str = Field(
         "labels.csv",
-        description="Labels: CSV (observation, point, u_px, line), CVAT for images 1.1 (.xml), or LabelMe (a pattern "
-        "of .json files, one a scan).",
+        description="Labels: CSV (observation, point, u_px, line), CVAT for images 1.1 (.xml), LabelMe (a pattern "
+        "of .json files, one a scan), COCO keypoints, Label Studio or VIA (.json).",
     )
     point_id: str | None = Field(
         None,

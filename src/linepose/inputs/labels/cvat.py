@@ -4,7 +4,6 @@ The attribute `id` (or `point`, `point_id`), or the label, names the point. Poin
 picture, of which CVAT keeps the last place, are no labels.
 """
 
-import logging
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
@@ -12,13 +11,12 @@ from xml.etree import ElementTree
 
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked
+from linepose.inputs.labels.format import LabelFormat, tell_passed_over
 
 _HELPERS: Final = {"box", "polygon", "polyline", "mask", "ellipse", "cuboid"}
 
-log = logging.getLogger(__name__)
 
-
-def read_cvat(path: Path) -> list[Clicked]:
+def read(path: Path, _: object = None) -> list[Clicked]:
     """The points of one file; raises InputError where it is not CVAT's."""
     try:
         root = ElementTree.parse(path).getroot()
@@ -33,9 +31,8 @@ def read_cvat(path: Path) -> list[Clicked]:
     shapes = [(image, shape) for image in root.iter("image") for shape in _shapes(image)]
     seen = [(image, shape) for image, shape in shapes if shape.get("outside") != "1"]
     points = [(image, shape) for image, shape in seen if shape.tag == "points"]
-    if len(shapes) > len(points):
-        outside, others = len(shapes) - len(seen), len(seen) - len(points)
-        log.warning("%s: passed over: %d shapes outside their pictures, %d that are no points", path, outside, others)
+    outside, others = len(shapes) - len(seen), len(seen) - len(points)
+    tell_passed_over(path, {"shapes outside their pictures": outside, "shapes that are no points": others})
     place = {shape: number for image in root.iter("image") for number, shape in enumerate(image.iter("points"), 1)}
     return [
         _point(shape, f"{path}, image {image.get('name')}, points {place[shape]}", image) for image, shape in points
@@ -68,3 +65,6 @@ def _attributes(element: ElementTree.Element) -> tuple[tuple[str, str], ...]:
     """The attributes that are filled in."""
     named = ((one.get("name", ""), (one.text or "").strip()) for one in element.iter("attribute"))
     return tuple((name, text) for name, text in named if text)
+
+
+CVAT: Final = LabelFormat("CVAT", ".xml", lambda _: True, read)

@@ -1,22 +1,19 @@
-"""Reading labels by the ending of their files.
+"""Reading labels by the ending of their files, and of JSON by what is in it.
 
-Inside, u_px and line are whole numbers at the centres of pixels and lines. LabelMe and CVAT count from the picture's
-upper left corner, so that the first pixel's centre is at 0.5: half a pixel is subtracted from their coordinates.
+Inside, u_px and line are whole numbers at the centres of pixels and lines. The tools count from the picture's upper
+left corner, so that the first pixel's centre is at 0.5: half a pixel is subtracted from their coordinates.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
 
 import pandas as pd
 
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked, labels_of
-from linepose.inputs.labels.cvat import read_cvat
-from linepose.inputs.labels.labelme import read_labelme
+from linepose.inputs.labels.format import read_json
 from linepose.inputs.labels.labels import read_labels
-
-_TOOLS: Final[dict[str, Callable[[Path], list[Clicked]]]] = {".json": read_labelme, ".xml": read_cvat}
+from linepose.inputs.labels.registry import FORMATS
 
 
 def read_point_labels(
@@ -24,7 +21,7 @@ def read_point_labels(
 ) -> pd.DataFrame:
     """Labels observation, point, u_px, line, ordered by the first two, of a file or a pattern of files in `folder`.
 
-    `scans` are the scan files by observation; LabelMe and CVAT name the picture of a scan by the scan's own name.
+    `scans` are the scan files by observation; tools name the picture of a scan by the scan's own name.
     `point_id` is the place of the points' names, see `point_of`. Raises InputError naming the file and the label that
     has no scan, no name, or is given twice.
     """
@@ -36,11 +33,23 @@ def read_point_labels(
         raise InputError(str(folder / pattern), "no such file", "approximate labels", remedy)
     clicked: list[Clicked] = []
     for path in paths:
-        tool = _TOOLS.get(path.suffix.lower())
-        if tool is None:
-            expected = f"one of .csv, {', '.join(_TOOLS)}"
-            raise InputError(str(path), f"file type {path.suffix!r}", expected, "export the labels in one of these")
-        clicked += tool(path)
+        clicked += _read(path)
     if not clicked:
         raise InputError(str(paths[0]), "no label", "the points that are seen in each scan", "label the scans")
     return labels_of(clicked, scans, n_pixels, point_id)
+
+
+def _read(path: Path) -> list[Clicked]:
+    """The labels of one file, in whichever format it is."""
+    suffix = path.suffix.lower()
+    formats = [one for one in FORMATS if one.suffix == suffix]
+    if not formats:
+        expected = f"one of {', '.join(sorted({'.csv', *(one.suffix for one in FORMATS)}))}"
+        raise InputError(str(path), f"file type {path.suffix!r}", expected, "export the labels in one of these")
+    content = read_json(path) if suffix == ".json" else None
+    for one in formats:
+        if one.recognises(content):
+            return one.read(path, content)
+    tools = ", ".join(one.tool for one in formats)
+    remedy = "export the labels in one of these, or correct source.labels"
+    raise InputError(str(path), "JSON of another kind", f"that of one of {tools}", remedy)

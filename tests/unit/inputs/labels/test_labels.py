@@ -110,7 +110,7 @@ def test_cvat_points_outside_the_picture_are_no_labels(tmp_path, caplog, skeleto
     )
     cvat(tmp_path / "a.xml", points)
     assert read(tmp_path, "a.xml").to_numpy().tolist() == [[1, 0, 10, 20]]
-    assert "a.xml: passed over: 3 shapes outside their pictures, 1 that are no points" in caplog.text
+    assert "a.xml: passed over: 3 shapes outside their pictures, 1 shapes that are no points" in caplog.text
 
 
 @pytest.mark.parametrize("tool", ["csv", "json", "xml"])
@@ -153,7 +153,7 @@ def test_a_dot_labelled_at_its_middle_is_found_there(tmp_path, drawn, tool):
         ),
         ([shape("3", 1, 1) | {"points": []}], {}, r"shape 1: found no label with one place"),
         ([], {}, r"run-01.json: found no label"),
-        ({}, {}, r"run-01.json: found JSON without shapes, expected LabelMe's JSON"),
+        ({}, {}, r"run-01.json: found JSON of another kind, expected that of one of LabelMe, COCO"),
     ],
 )
 def test_wrong_labelme_file_is_one_line(tmp_path, shapes, keys, told):
@@ -200,7 +200,7 @@ def test_other_files_are_told(tmp_path):
     with pytest.raises(InputError, match=r"labels.json: found no such file"):
         read(tmp_path, "labels.json")
     (tmp_path / "labels.json").write_text("{")
-    with pytest.raises(InputError, match=r"labels.json: found .*, expected LabelMe's JSON"):
+    with pytest.raises(InputError, match=r"labels.json: found .*, expected labels in JSON"):
         read(tmp_path, "labels.json")
     Image.new("L", (4, 4)).save(tmp_path / "labels.png")
     with pytest.raises(InputError, match=r"found file type '.png', expected one of .csv, .json, .xml"):

@@ -1,0 +1,48 @@
+"""A format of labels that a person's tool writes, and what its readers have in common."""
+
+import json
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linepose.errors import InputError
+from linepose.inputs.labels.clicked import Clicked
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class LabelFormat:
+    """The tool's name, the ending of its files, whether a JSON's content is of it, and how a file is read.
+
+    `read` gets the path and the content, None of a file that is not JSON.
+    """
+
+    tool: str
+    suffix: str
+    recognises: Callable[[Any], bool]
+    read: Callable[[Path, Any], list[Clicked]]
+
+
+def read_json(path: Path) -> Any:
+    """The content of a JSON file; raises InputError where it is none."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        found = " ".join(str(error).split())[:200]
+        raise InputError(str(path), found, "labels in JSON", "restore the file") from None
+
+
+def entries(value: Any) -> list[dict[str, Any]]:
+    """The mappings in a list, or in a mapping's values; none of anything else."""
+    values = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return [one for one in values if isinstance(one, dict)]
+
+
+def tell_passed_over(path: Path, counts: dict[str, int]) -> None:
+    """Say how many of what a reader has passed over, where it has."""
+    told = ", ".join(f"{count} {what}" for what, count in counts.items() if count)
+    if told:
+        log.warning("%s: passed over: %s", path, told)

@@ -1,0 +1,155 @@
+"""Files as COCO, Label Studio and VIA have them, made up: two scans, points 0 and gate, and what is passed over."""
+
+import json
+from copy import deepcopy
+from pathlib import Path
+
+import pytest
+
+from linepose.errors import InputError
+from linepose.inputs.labels import read_point_labels
+
+SCANS = {1: Path("scans/run-01.hdr"), 3: Path("scans/run-03.bil.hdr")}
+COCO = {
+    "images": [
+        {"id": 11, "file_name": "png/run-01.png", "width": 640, "height": 400},
+        {"id": 12, "file_name": "run-03.png", "width": 640, "height": 400},
+    ],
+    "categories": [{"id": 1, "name": "board", "keypoints": ["0", "gate"], "skeleton": []}],
+    "annotations": [
+        {"id": 1, "image_id": 11, "category_id": 1, "keypoints": [10.5, 20.5, 2, 0, 0, 0], "bbox": [0, 0, 9, 9]},
+        {"id": 2, "image_id": 12, "category_id": 1, "keypoints": [1.5, 2.5, 1, 100.5, 30.5, 2]},
+        {"id": 3, "image_id": 12, "category_id": 1, "bbox": [0, 0, 9, 9]},
+    ],
+}
+
+
+def region(name, x, y, kind="keypointlabels", **keys):
+    value = {"x": 100 * x / 640, "y": 100 * y / 400, "width": 0.5, kind: [name]}
+    size = {"original_width": 640, "original_height": 400, "image_rotation": 0}
+    return {"id": f"r{x}", "from_name": "kp", "to_name": "image", "type": kind, "value": value, **size, **keys}
+
+
+STUDIO = [
+    {
+        "id": 7,
+        "data": {"image": "/data/upload/1/0badcafe-run-01.png"},
+        "annotations": [
+            {"result": [region("0", 10.5, 20.5), region("board", 1, 1, "rectanglelabels")]},
+            {"result": [region("0", 50, 60)], "was_cancelled": True},
+        ],
+    },
+    {
+        "id": 8,
+        "data": {"image": "/data/local-files/?d=png%2Frun-03.png"},
+        "annotations": [
+            {
+                "result": [
+                    region("0", 1.5, 2.5),
+                    region("dot", 100.5, 30.5),
+                    region("dot", 100.5, 30.5) | {"from_name": "mark", "type": "textarea", "value": {"text": ["gate"]}},
+                ]
+            }
+        ],
+    },
+]
+
+
+def point(x, y, kind="point", **attributes):
+    return {"shape_attributes": {"name": kind, "cx": x, "cy": y}, "region_attributes": attributes}
+
+
+VIA = {
+    "_via_settings": {},
+    "_via_img_metadata": {
+        "run-01.png123": {"filename": "run-01.png", "size": 123, "regions": [point(10.5, 20.5, id="0", quality="7")]},
+        "run-03.png9": {
+            "filename": "run-03.png",
+            "size": 9,
+            "regions": {
+                "0": point(1.5, 2.5, id={"0": True, "1": False}),
+                "1": point(100.5, 30.5, id="gate"),
+                "2": point(0, 0, "rect"),
+            },
+        },
+    },
+}
+
+
+def read(folder, content, point_id=None):
+    (folder / "labels.json").write_text(json.dumps(content))
+    return read_point_labels(folder, "labels.json", SCANS, 640, point_id)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (COCO, "1 keypoints of visibility 0, 1 annotations without keypoints"),
+        (VIA, "1 regions that are no points"),
+        (VIA["_via_img_metadata"], "1 regions that are no points"),
+    ],
+)
+def test_points_by_name_and_what_is_passed_over(tmp_path, content, told, caplog):
+    labels = read(tmp_path, content)
+    assert labels.to_numpy().tolist() == [[1, "0", 10, 20], [3, "0", 1, 2], [3, "gate", 100, 30]]
+    assert f"labels.json: passed over: {told}" in caplog.text
+
+
+def test_label_studio_in_per_cent_with_names_in_labels_or_a_control(tmp_path, caplog):
+    labels = read(tmp_path, STUDIO)
+    assert labels["point"].tolist() == ["0", "0", "dot"]
+    assert labels[["u_px", "line"]].to_numpy().ravel() == pytest.approx([10, 20, 1, 2, 100, 30])
+    assert "passed over: 1 regions that are no keypoints, 1 cancelled annotations" in caplog.text
+    studio = deepcopy(STUDIO)
+    studio[1]["annotations"][0]["result"].pop(0)
+    studio[0]["annotations"][0]["result"][0]["value"]["text"] = "post"
+    studio[0]["annotations"][0]["result"][0]["from_name"] = "mark"
+    assert read(tmp_path, studio, "mark")["point"].tolist() == ["post", "gate"]
+
+
+def test_label_studios_short_form(tmp_path):
+    short = {"keypointlabels": ["7"], "x": 50.0, "y": 25.0, "width": 0.5, "original_width": 640, "original_height": 400}
+    labels = read(tmp_path, [{"id": 1, "image": "/data/upload/1/0badcafe-run-01.png", "kp": [short], "annotator": 1}])
+    assert labels.to_numpy().tolist() == [[1, 7, 319.5, 99.5]]
+
+
+@pytest.mark.parametrize(
+    ("content", "keys", "value", "told"),
+    [
+        (
+            COCO,
+            ["annotations", 0, "keypoints"],
+            [1, 2],
+            r"annotation 1: found 2 numbers for 2 keypoints",
+        ),
+        (COCO, ["annotations", 0, "keypoints"], ["a"], r"annotation 1: found keypoints that are no numbers"),
+        (COCO, ["annotations", 0, "image_id"], 5, r"annotation 1: found image_id 5, expected the id of an image"),
+        (COCO, ["categories"], [], r"annotation 1: found 6 numbers for 0 keypoints"),
+        (COCO, ["images", 0, "width"], 320, r"annotation 1, 0: found a picture 320 pixels wide, expected 640"),
+        (STUDIO, [0, "annotations", 0, "result", 0, "value", "x"], "a", r"task 7, region r10.5: found no place"),
+        (STUDIO, [0, "annotations", 0, "result", 0, "image_rotation"], 90, r"found a picture turned by 90 deg"),
+        (STUDIO, [0, "data"], {}, r"task 7, region r10.5: found picture , expected the name of a scan"),
+        (VIA, ["_via_img_metadata", "run-01.png123", "regions", 0, "shape_attributes", "cx"], None, r"found cx=None"),
+        (
+            VIA,
+            ["_via_img_metadata", "run-01.png123", "regions", 0, "region_attributes"],
+            {"quality": "2"},
+            r"run-01.png, region 1: found label '', quality '2', expected .* by source.point_id which place",
+        ),
+    ],
+)
+def test_what_cannot_be_used_is_one_line(tmp_path, content, keys, value, told):
+    content = deepcopy(content)
+    part = content
+    for key in keys[:-1]:
+        part = part[key]
+    part[keys[-1]] = value
+    with pytest.raises(InputError, match=told) as error:
+        read(tmp_path, content)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("content", [[], {}, 3, [[1]], {"a": {"b": 1}}, {"images": [], "annotations": 3}])
+def test_json_of_another_kind(tmp_path, content):
+    with pytest.raises(InputError, match=r"JSON of another kind, expected that of one of LabelMe, COCO k"):
+        read(tmp_path, content)
