@@ -19,7 +19,7 @@ _NUMBER: Final = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?"
 class Preset:
     """A layout: its name, the program for people, keys of the format `table`, and whether a file's head is of it.
 
-    Where files have no attitude, the platform file must say which columns hold one that was joined to them.
+    Where files have no attitude, the platform file must name a second log, or columns that were joined to them.
     """
 
     name: str
@@ -153,7 +153,7 @@ _ALL: Final = (
     ),
     Preset(
         "rtklib",
-        "RTKLIB solutions (.pos) to which roll, pitch and heading were joined",
+        "RTKLIB solutions (.pos), with the attitudes of a second log",
         _GEODETIC
         | {
             "heading": False,
@@ -166,6 +166,12 @@ _ALL: Final = (
         has_attitude=False,
     ),
 )
+_ATTITUDE_LOG: Final = {  # to be changed by the user
+    "file": "attitude.csv",
+    "time_unit": "s",
+    "angle_unit": "degrees",
+    "columns": {"time": "time", "attitude": ["roll", "pitch", "heading"]},
+}
 PRESETS: Final = {one.name: one for one in _ALL}
 NAMES: Final = ", ".join(f"`{name}`" for name in PRESETS)
 
@@ -184,9 +190,10 @@ def overlaid(values: Any) -> Any:
     columns = columns.model_dump(exclude_unset=True) if isinstance(columns, Settings) else columns
     if not isinstance(columns, Mapping):
         return {**below, **values}
-    if not PRESETS[name].has_attitude and "attitude" not in columns:
+    if not PRESETS[name].has_attitude and "attitude" not in columns and values.get("attitude_log") is None:
         found, expected = f"{name}, whose files hold positions alone", "an attitude"
-        remedy = "join roll, pitch and heading to the rows, and name them in source.navigation.columns.attitude"
+        remedy = "name the log of the attitudes in source.navigation.attitude_log, or columns joined to the rows in "
+        remedy += "source.navigation.columns.attitude"
         raise InputError("source.navigation.preset", found, expected, remedy)
     return {**below, **values, "columns": {**below["columns"], **columns}}
 
@@ -199,4 +206,6 @@ def recognised(path: Path) -> dict[str, Any] | None:
     except OSError:
         return None
     found = next((one for one in _ALL if one.recognises(head)), None)
-    return None if found is None else {"preset": found.name}
+    if found is None:
+        return None
+    return {"preset": found.name} | ({} if found.has_attitude else {"attitude_log": _ATTITUDE_LOG})

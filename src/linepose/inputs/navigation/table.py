@@ -1,6 +1,5 @@
 """Navigation format `table`: Parquet or text of any layout, its columns named in the platform file or by a preset."""
 
-import datetime
 import logging
 from collections.abc import Iterator
 from dataclasses import replace
@@ -9,30 +8,25 @@ from typing import Any, Final, Literal
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
-from scipy.spatial.transform import Rotation
+from pydantic import Field, PositiveFloat, model_validator
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.geometry import rotations
-from linepose.inputs import axes, gps_time
+from linepose.inputs import axes
 from linepose.inputs.local_frame import projected_frame, tangent_frame
 from linepose.inputs.navigation import presets
-from linepose.inputs.navigation.format import NavigationFormat
+from linepose.inputs.navigation.attitude_log import AttitudeSection, with_attitudes
+from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
+from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
-from linepose.inputs.navigation.table_columns import Columns, Name, parts_of
-from linepose.inputs.navigation.table_times import OF_DAY, OF_TEXT, TableScale, unix_from_day, unix_from_text
-from linepose.inputs.navigation.text_file import TextSection, read_text
+from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts_of
+from linepose.inputs.navigation.table_file import read_columns
+from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad
+from linepose.inputs.navigation.table_times import OF_TEXT
 from linepose.settings import Settings
 
-_PARQUET: Final = {".parquet", ".pq"}
 _ENU_SIGMAS: Final = [1, 0, 2]  # standard deviations of east, north, up in the order north, east, down
-_NOT_UNIT: Final = 1e-3
-
-Names = tuple[Name, Name, Name]
 
 log = logging.getLogger(__name__)
 
@@ -58,16 +52,12 @@ class ColumnsSection(Settings):
         None, description="One standard deviation of roll, pitch, yaw, in `angle_unit`; both sigmas or none."
     )
 
-    def of_poses(self) -> list[Name]:
-        """The columns that a pose is made of."""
-        return [self.time, *([self.week] if self.week else []), *self.position, *self.attitude]
-
     def of_sigmas(self) -> list[Name]:
         """The columns of the standard deviations, if there are any."""
         return [*(self.sigma_position or ()), *(self.sigma_attitude or ())]
 
 
-class TableSection(TextSection):
+class TableSection(TimedLayout, GeodeticSection):
     """Keys of the format `table`."""
 
     format: Literal["table"] = Field(description="`table`: Parquet or text, with a preset or a column map.")
@@ -76,21 +66,13 @@ class TableSection(TextSection):
         description=f"Layout, columns and units of a known program, which other keys then change: {presets.NAMES}.",
     )
     columns: ColumnsSection = Field(ColumnsSection(), description="Which column holds what.")
-    time_unit: Literal["s", "ms", "us", "ns"] = Field("us", description="Unit of the time, unless it is text.")
-    time_scale: TableScale = Field(
-        "unix",
-        description="`unix`: UTC since 1970; `iso`: UTC as text, 2026-05-01T12:00:00.25Z; `gps`: since 1980-01-06, "
-        "leap seconds counted; `gps_week`: since the start of the GPS week; `gps_iso`: GPS time as text; `day`, "
-        "`gps_day`: since midnight, of UTC or GPS time.",
+    attitude_log: AttitudeSection | None = Field(
+        None, description="A second log that holds the attitudes, where this one holds positions alone."
     )
-    time_format: str | None = Field(
-        None, description="Layout of a time as text, where it is not ISO 8601: `%d.%m.%Y %H:%M:%S.%f`."
-    )
-    gps_week: int | None = Field(
-        None, ge=0, description="The GPS week of the first row, for `gps_week`; if not given, that of the scans."
-    )
-    date: datetime.date | None = Field(
-        None, description="The day of the first row, for `day` and `gps_day`; if not given, that of the scans."
+    maximum_fix_gap_s: PositiveFloat = Field(
+        DEFAULT_GAP_S,
+        description="Longest time between two positions over which they are interpolated to an attitude of the second "
+        "log (s).",
     )
     times: str | None = Field(
         None, description="File of the rows' times, one a line, where the log has none; its column is then `time`."
@@ -100,12 +82,6 @@ class TableSection(TextSection):
         description="Position as north, east, down (m), east, north, up (m), or latitude, longitude, ellipsoidal "
         "height (m).",
     )
-    attitude_axes: Literal["ned", "enu"] = Field(
-        "ned",
-        description="Angles of a body x forward, y right, z down in north, east, down, or of x forward, y left, z up "
-        "in east, north, up (ROS).",
-    )
-    angle_unit: Literal["degrees", "radians"] = Field("radians", description="Of roll, pitch, yaw and their sigmas.")
     latitude_unit: Literal["degrees", "radians", "dms"] = Field(
         "degrees", description="Of latitude and longitude; `dms`: degrees, minutes, seconds in one cell or three."
     )
@@ -117,24 +93,36 @@ class TableSection(TextSection):
 
     @model_validator(mode="after")
     def _has_both_sigmas(self) -> "TableSection":
-        if (self.columns.sigma_position is None) != (self.columns.sigma_attitude is None):
-            raise ValueError("columns.sigma_position and columns.sigma_attitude, or none of them")
+        of_attitude = self.columns if self.attitude_log is None else self.attitude_log.columns
+        if (self.columns.sigma_position is None) != (of_attitude.sigma_attitude is None):
+            whose = "" if self.attitude_log is None else "attitude_log."
+            raise ValueError(f"columns.sigma_position and {whose}columns.sigma_attitude, or none of them")
         return self
+
+    def of_poses(self) -> list[Name]:
+        """The columns that a row must have."""
+        columns = self.columns
+        week = [columns.week] if columns.week else []
+        return [columns.time, *week, *columns.position, *(() if self.attitude_log else columns.attitude)]
 
     def files(self, folder: Path) -> set[Path]:
         """Every file that is read."""
-        return super().files(folder) | ({folder / self.times} if self.times else set())
+        attitudes = set() if self.attitude_log is None else set(self.attitude_log.files(folder))
+        return super().files(folder) | attitudes | ({folder / self.times} if self.times else set())
 
     def lacking(self, folder: Path) -> Literal["gps_week", "date"] | None:  # noqa: ARG002
-        """The week or the day, where the time counts from it and it is not given."""
-        if self.time_scale == "gps_week" and self.gps_week is None and self.columns.week is None:
-            return "gps_week"
-        return "date" if self.time_scale in OF_DAY and self.date is None else None
+        """The week or the day, where a log's time counts from it and it is not given."""
+        mine = self.lacks(self.columns.week)
+        other = self.attitude_log
+        return mine or (other.lacks(other.columns.week) if other is not None else None)
 
 
 def read(section: TableSection, folder: Path) -> NavigationRecord:
     """The record of the table's files; raises InputError naming a missing column or a broken row."""
-    parts = [_read_part(one, section) for one in _tables(section, folder)]
+    if section.attitude_log is None:
+        parts = [_read_part(one, section) for one in _tables(section, folder)]
+    else:
+        parts = [_joined(section, section.attitude_log, folder)]
     poses, covariances = [part[0] for part in parts], [part[1] for part in parts]
     if section.coordinates == "geodetic":
         return geodetic_record(poses, covariances, section)
@@ -170,22 +158,11 @@ def _tables(section: TableSection, folder: Path) -> Iterator[Columns]:
 def _columns(path: Path, section: TableSection) -> Columns:
     columns = section.columns
     apart = [name for name in columns.position[:2] if isinstance(name, str)] if section.latitude_unit == "dms" else []
-    as_text = [*apart, *(part for name in _several(columns) for part in parts_of(name))]
+    several = [name for name in section.of_poses() if not isinstance(name, str)]
+    as_text = [*apart, *(part for name in several for part in parts_of(name))]
     if section.time_scale in OF_TEXT:
         as_text += parts_of(columns.time)
-    if path.suffix.lower() not in _PARQUET:
-        used = [part for name in [*columns.of_poses(), *columns.of_sigmas()] for part in parts_of(name)]
-        table = read_text(path, section, used, as_text, apart)
-        return Columns(path, table.cells, table.first_line, table.names)
-    try:
-        return Columns(path, pq.read_table(path).to_pandas(timestamp_as_object=False), 0)
-    except (pa.ArrowException, OSError) as error:
-        raise InputError(str(path), " ".join(str(error).split()), "a Parquet file", "restore it") from None
-
-
-def _several(columns: ColumnsSection) -> list[Name]:
-    """Values in several cells, which are joined as text."""
-    return [name for name in columns.of_poses() if not isinstance(name, str)]
+    return read_columns(path, section, [*section.of_poses(), *columns.of_sigmas()], as_text, apart)
 
 
 def _in_three(columns: Columns, section: TableSection) -> ColumnsSection:
@@ -198,16 +175,45 @@ def _in_three(columns: Columns, section: TableSection) -> ColumnsSection:
     return section.columns.model_copy(update={"position": (cells(latitude), cells(longitude), height)})
 
 
-def _read_part(table: Columns, section: TableSection) -> tuple[Poses, Covariances]:
+def _joined(section: TableSection, of_attitudes: AttitudeSection, folder: Path) -> tuple[Poses, Covariances]:
+    """Poses of this log's positions and the second log's attitudes, which takes the week and day that it lacks here."""
+    given = {key: getattr(section, key) for key in ("gps_week", "date") if getattr(of_attitudes, key) is None}
+    parts = [_fixes(table, section) for table in _tables(section, folder)]
+    time_us, position, sigma = (np.concatenate(values) for values in zip(*parts, strict=True))
+    attitudes = of_attitudes.model_copy(update=given)
+    place = str(folder / section.file)
+    return with_attitudes((time_us, position, sigma), attitudes, folder, section.maximum_fix_gap_s, place)
+
+
+def _fixes(table: Columns, section: TableSection) -> tuple[NDArray[np.int64], Floats, Floats]:
+    """Times (F,), positions (F, 3) and standard deviations north, east, down (F, 3), NaN where there are none."""
+    table, columns = _whole_rows(table, section)
+    time_us = time_us_of(table, section, columns.time, columns.week)
+    sigma = np.full((len(time_us), 3), np.nan)
+    if columns.sigma_position is not None:
+        sigma = table.numbers(columns.sigma_position)
+        sigma = sigma[:, _ENU_SIGMAS] if section.coordinates == "enu" else sigma
+    return time_us, _position(table, section, columns), sigma
+
+
+def _whole_rows(table: Columns, section: TableSection) -> tuple[Columns, ColumnsSection]:
+    """The rows with a value in each column that a pose needs, and the column map; how many others there are is told."""
     columns = _in_three(table, section)
-    table.check([*columns.of_poses(), *columns.of_sigmas()])
-    kept, place = table.filled(columns.of_poses()), str(table.path)
-    if not kept.all():
-        told = "%s: %d of %d rows have no time, position or attitude and are left out"
-        log.warning(told, place, np.count_nonzero(~kept), len(kept))
-        table = table.rows(kept)
-    time_us = _time_us(table, section, columns)
-    euler = _euler(table, section, columns)
+    names = section.model_copy(update={"columns": columns}).of_poses()
+    table.check([*names, *columns.of_sigmas()])
+    kept = table.filled(names)
+    if kept.all():
+        return table, columns
+    told = "%s: %d of %d rows have no time, position or attitude and are left out"
+    log.warning(told, table.path, np.count_nonzero(~kept), len(kept))
+    return table.rows(kept), columns
+
+
+def _read_part(table: Columns, section: TableSection) -> tuple[Poses, Covariances]:
+    table, columns = _whole_rows(table, section)
+    place = str(table.path)
+    time_us = time_us_of(table, section, columns.time, columns.week)
+    euler = euler_of(table, section, columns.attitude)
     position = _position(table, section, columns)
     poses = Poses(time_us, position, euler, place)
     if columns.sigma_position is None or columns.sigma_attitude is None:
@@ -225,12 +231,8 @@ def _covariances(
     position, attitude = table.numbers(columns.sigma_position or ()), table.numbers(columns.sigma_attitude or ())
     if section.coordinates == "enu":
         position = position[:, _ENU_SIGMAS]
-    sigma = np.hstack([position, attitude * _to_rad(section)])
+    sigma = np.hstack([position, attitude * to_rad(section)])
     return Covariances(time_us, axes.diagonal_covariance(sigma), str(table.path))
-
-
-def _to_rad(section: TableSection) -> float:
-    return np.pi / 180 if section.angle_unit == "degrees" else 1.0
 
 
 def _position(table: Columns, section: TableSection, columns: ColumnsSection) -> Floats:
@@ -245,40 +247,3 @@ def _position(table: Columns, section: TableSection, columns: ColumnsSection) ->
     if section.coordinates == "geodetic" and section.latitude_unit == "radians":
         return position * [180 / np.pi, 180 / np.pi, 1.0]
     return position
-
-
-def _euler(table: Columns, section: TableSection, columns: ColumnsSection) -> Floats:
-    """Our roll, pitch, yaw (K, 3) of three angles or of a quaternion."""
-    values = table.numbers(columns.attitude)
-    if values.shape[1] == 3 and section.attitude_axes == "ned":
-        return values * _to_rad(section)
-    if values.shape[1] == 3:
-        matrices = rotations.matrix_from_euler(values * _to_rad(section))
-    else:
-        for row in np.flatnonzero(~(np.abs(np.linalg.norm(values, axis=1) - 1) < _NOT_UNIT))[:1]:
-            found = f"quaternion {', '.join(f'{one:g}' for one in values[row])}"
-            place = table.place(row, " ".join(part for name in columns.attitude for part in parts_of(name)))
-            raise InputError(place, found, "one of length 1 in the order x, y, z, w", "correct columns.attitude")
-        matrices = Rotation.from_quat(values).as_matrix()
-    return rotations.euler_from_matrix(
-        matrices if section.attitude_axes == "ned" else axes.matrix_from_enu_flu(matrices)
-    )
-
-
-def _time_us(table: Columns, section: TableSection, columns: ColumnsSection) -> NDArray[np.int64]:
-    """The times (K,) in Unix microseconds."""
-    scale, place = section.time_scale, f"{table.path}, {' '.join(parts_of(columns.time))}"
-    if scale in OF_TEXT:
-        texts = (piece.text(columns.time) for piece in table.pieces())
-        return np.concatenate([unix_from_text(text, scale, section.time_format, place) for text in texts])
-    times = gps_time.microseconds(table.number(columns.time), section.time_unit)
-    if scale in OF_DAY:
-        return unix_from_day(times, section.date, scale, str(table.path))
-    if scale == "gps_week" and columns.week:
-        return gps_time.unix_from_gps(np.rint(table.number(columns.week)).astype(np.int64) * gps_time.WEEK_US + times)
-    if scale == "gps_week":
-        return gps_time.unix_from_week_of_first(section.gps_week, times, str(table.path))
-    if scale == "gps" and len(times) and 0 <= times.max() < gps_time.WEEK_US:
-        found, expected = f"times up to {times.max() / 1e6:g} s", "seconds since 1980"
-        raise InputError(place, found, expected, "set source.navigation.time_scale to gps_week")
-    return gps_time.unix_from_gps(times) if scale == "gps" else times

@@ -12,6 +12,8 @@ from linepose.errors import InputError
 
 Name = str | tuple[str, ...]  # a column, or several whose cells are one value (a date and a time; degrees, minutes)
 
+Names = tuple[Name, Name, Name]
+
 _ANGLE: Final = (  # 22 18 04.3, 22:18:04.3, 22°18'04.3"N; minutes or seconds may be missing
     r"^\s*(?P<before>[NSEWnsew]?)\s*(?P<sign>[+-]?)\s*(?P<d>\d+(?:\.\d*)?)"
     r"(?:[^\d.+-]+(?P<m>\d+(?:\.\d*)?))?(?:[^\d.+-]+(?P<s>\d+(?:\.\d*)?))?[^\dNSEWnsew]*(?P<after>[NSEWnsew]?)\s*$"
@@ -36,14 +38,14 @@ class Columns:
         self.path, self.cells, self.first_line = path, cells, first_line
         self.names = tuple(names) or tuple(map(str, cells.columns))
 
-    def check(self, names: Sequence[Name]) -> None:
-        """Raise InputError where one of these columns is not there."""
+    def check(self, names: Sequence[Name], key: str = "source.navigation.columns") -> None:
+        """Raise InputError, with the key that names them, where one of these columns is not there."""
         there = list(self.cells.columns)
         missing = [part for name in names for part in parts_of(name) if part not in there]
         if missing:
             found = f"columns {', '.join(self.names)}"
             expected = f"among them {', '.join(missing)}"
-            raise InputError(str(self.path), found, expected, "correct source.navigation.columns")
+            raise InputError(str(self.path), found, expected, f"correct {key}")
 
     def filled(self, names: Sequence[Name]) -> np.ndarray:
         """Which rows (K,) have a value in each of these columns."""

@@ -15,7 +15,7 @@ import pandas as pd
 from pydantic import Field, PositiveInt, field_validator
 
 from linepose.errors import InputError
-from linepose.inputs.navigation.format import GeodeticSection
+from linepose.settings import Settings
 
 _LINES_ABOVE: Final = 2_000  # within which the first row of values must stand
 _BRIEFLY: Final = 60
@@ -23,7 +23,7 @@ _ROWS_AT_ONCE: Final = 50_000
 _BLANKS: Final = r"\s+"
 
 
-class TextSection(GeodeticSection):
+class TextLayout(Settings):
     """Keys that say how a text file of columns is laid out."""
 
     heading: bool = Field(True, description="Whether a row of a text file names the columns.")
@@ -67,7 +67,7 @@ class TextTable:
 
 
 def read_text(
-    path: Path, layout: TextSection, used: Iterable[str], as_text: Iterable[str], apart: Sequence[str] = ()
+    path: Path, layout: TextLayout, used: Iterable[str], as_text: Iterable[str], apart: Sequence[str] = ()
 ) -> TextTable:
     """The rows of a text file, of the columns `used` that it has; those `as_text` stay text.
 
@@ -99,7 +99,7 @@ def _fault(path: Path, error: Exception) -> InputError:
 
 
 def _cells(
-    path: Path, layout: TextSection, names: list[str], first_line: int, kept: list[int], as_text: set[str]
+    path: Path, layout: TextLayout, names: list[str], first_line: int, kept: list[int], as_text: set[str]
 ) -> pd.DataFrame:
     """The columns `kept`, by their numbers; read in parts, so that the others never take memory together."""
     numbers = list(range(len(names)))
@@ -123,7 +123,7 @@ def _cells(
         return pd.concat([part[kept] for part in parts])
 
 
-def _head(path: Path, layout: TextSection, apart: Sequence[str]) -> tuple[list[str], int]:
+def _head(path: Path, layout: TextLayout, apart: Sequence[str]) -> tuple[list[str], int]:
     """Names of the columns, and the line (from 0) of the first row of values."""
     lines = _first_lines(path, layout.encoding)
     row, names = layout.skipped_lines, list[str]()
@@ -145,7 +145,7 @@ def _first_lines(path: Path, encoding: str) -> list[str]:
         return [line.rstrip("\r\n") for line in islice(file, _LINES_ABOVE)]
 
 
-def _heading_row(path: Path, lines: list[str], layout: TextSection) -> int:
+def _heading_row(path: Path, lines: list[str], layout: TextLayout) -> int:
     if not layout.heading_words:
         return min(_next_row(lines, layout.skipped_lines, layout.comment), len(lines) - 1) if lines else 0
     for row in range(layout.skipped_lines, len(lines)):
@@ -163,11 +163,11 @@ def _next_row(lines: list[str], row: int, comment: str | None) -> int:
     return row
 
 
-def _without_comment_sign(line: str, layout: TextSection) -> str:
+def _without_comment_sign(line: str, layout: TextLayout) -> str:
     return line.strip().removeprefix(layout.comment) if layout.comment else line
 
 
-def _words(line: str, layout: TextSection, is_heading: bool = True) -> list[str]:
+def _words(line: str, layout: TextLayout, is_heading: bool = True) -> list[str]:
     if layout.comment:
         line = line.partition(layout.comment)[0]
     if layout.widths:

@@ -76,7 +76,7 @@ TEXTS = {
 
 def read(folder, text, preset, **keys):
     (folder / "log.txt").write_text(text)
-    assert recognised(folder / "log.txt") == {"preset": preset}
+    assert recognised(folder / "log.txt")["preset"] == preset
     return read_navigation(TableSection(format="table", file="log.txt", preset=preset, **keys), folder)
 
 
@@ -166,6 +166,6 @@ def test_page_names_every_preset():
 
 
 def test_solution_without_an_attitude_is_told():
-    told = r"preset: found rtklib, whose files hold positions alone.*name them in source.navigation.columns.attitude"
+    told = r"preset: found rtklib, whose files hold positions alone.*name the log of the attitudes in .*attitude_log"
     with pytest.raises(InputError, match=told):
         TableSection(format="table", file="log.pos", preset="rtklib")
