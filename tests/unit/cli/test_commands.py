@@ -82,14 +82,14 @@ def test_new_asks_for_what_is_not_given_until_it_fits(here):
     assert platform.hand_measured.position_m == (0.2, 0.0, -0.8)
 
 
-@pytest.mark.parametrize("name", ["novatel", "sbet", "nmea", "rosbag", "resonon"])
+@pytest.mark.parametrize("name", ["novatel", "sbet", "nmea", "rosbag", "resonon", "px4"])
 def test_new_takes_every_navigation_format(here, name):
     log = ["--source", "scans", "--navigation-format", name, "--navigation", "log/*.bin"]
     result = given("new", "mine", *GIVEN, *log)
     assert result.exit_code == 0, result.output
     source = load_platform(here / "config" / "platforms", "mine").source
     assert (source.navigation.format, source.navigation.file) == (name, "log/*.bin")
-    assert source.covariances == ("covariances.csv" if name == "resonon" else None)  # its logs hold none
+    assert source.covariances == ("covariances.csv" if name in {"resonon", "px4"} else None)  # its logs hold none
 
 
 @pytest.mark.parametrize(

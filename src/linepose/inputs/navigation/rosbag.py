@@ -1,8 +1,8 @@
 """Navigation format `rosbag`: bags of ROS 1 (.bag) and ROS 2 (a folder, or .db3 and .mcap files).
 
-Odometry, PoseStamped or PoseWithCovarianceStamped; else NovAtel's INSPVA or INSPVAX; else NavSatFix for the position
-and Imu for the attitude. After REP-103 the world is east, north, up and the body x forward, y left, z up. Times are the
-headers' (Unix).
+Odometry; else a fix (NavSatFix, GPSFix, SbgEkfNav) for the position and Imu or SbgEkfEuler for the attitude; else
+NovAtel's INSPVA or INSPVAX, Applanix's GSOF 49, PoseStamped or PoseWithCovarianceStamped; or tf. After REP-103 the
+world is east, north, up and the body x forward, y left, z up. Times are the headers' (Unix).
 """
 
 from pathlib import Path
@@ -14,9 +14,19 @@ from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
 from linepose.inputs.navigation.rosbag_axes import AttitudeAxes, OrientationCovariance
-from linepose.inputs.navigation.rosbag_fixes import FIX, fixes_and_imu
+from linepose.inputs.navigation.rosbag_fixes import fixes_and_imu
 from linepose.inputs.navigation.rosbag_messages import opened, topics_of
-from linepose.inputs.navigation.rosbag_poses import NOVATEL, ODOMETRY, POSES, novatel_poses, whole_poses
+from linepose.inputs.navigation.rosbag_poses import (
+    APPLANIX,
+    NOVATEL,
+    ODOMETRY,
+    POSES,
+    applanix_poses,
+    novatel_poses,
+    whole_poses,
+)
+from linepose.inputs.navigation.rosbag_transforms import transform_poses
+from linepose.inputs.navigation.rosbag_vendors import FIX_KINDS, IMU_KINDS, SBG, kinds_of
 
 
 class RosbagSection(GeodeticSection):
@@ -36,17 +46,31 @@ class RosbagSection(GeodeticSection):
         description="Topic of a NovAtel driver's INSPVA or INSPVAX; if not given, the bag's only one, where it has no "
         "odometry and no fixes.",
     )
+    applanix_topic: str | None = Field(
+        None,
+        description="Topic of an Applanix driver's NavigationSolutionGsof49; if not given, the only one, where the bag "
+        "has no odometry and no fixes.",
+    )
+    tf_frames: tuple[str, ...] = Field(
+        (),
+        description="Frames of tf from the world to the body, of which each is the parent of the next: `[map, odom, "
+        "base_link]`; tf is read where they are given.",
+    )
     fix_topic: str | None = Field(
-        None, description="Topic of sensor_msgs/NavSatFix, where there is no odometry; if not given, the only one."
+        None,
+        description="Topic of sensor_msgs/NavSatFix, gps_common/GPSFix or SBG's SbgEkfNav, where there is no odometry; "
+        "if not given, the only one of the first of these kinds.",
     )
     imu_topic: str | None = Field(
-        None, description="Topic of sensor_msgs/Imu with orientation, for NavSatFix; if not given, the only one."
+        None,
+        description="Topic of sensor_msgs/Imu with orientation, or of SBG's SbgEkfEuler, for fixes; if not given, the "
+        "only one of the first of these kinds.",
     )
-    attitude_axes: AttitudeAxes = Field(
-        "enu",
-        description="Axes of the orientation: forward, left, up in east, north, up (REP-103), or `ned`: forward, "
-        "right, down in north, east, down (VectorNav; SBG and MicroStrain by default); of odometry and poses also "
-        "those of the position.",
+    attitude_axes: AttitudeAxes | None = Field(
+        None,
+        description="Axes of the orientation: `enu`, forward, left, up in east, north, up (REP-103), or `ned`, "
+        "forward, right, down in north, east, down (VectorNav; SBG and MicroStrain by default); of odometry, poses and "
+        "tf also those of the position; if not given, enu, and of SBG's own messages ned.",
     )
     orientation_covariance: OrientationCovariance = Field(
         "fixed_axes",
@@ -81,29 +105,42 @@ FORMAT: Final = NavigationFormat("rosbag", RosbagSection, read, recognise=_is_ba
 def _part(bag: Any, path: Path, section: RosbagSection) -> tuple[tuple[Poses, Covariances], bool]:
     """What is read from a bag, and whether its positions are latitude, longitude, height."""
     source = _source(bag, section)
-    about = section.attitude_axes, section.orientation_covariance
+    sbg = source == "fixes" and kinds_of(bag, IMU_KINDS, section.imu_topic)[0].startswith(SBG)
+    about = section.attitude_axes or ("ned" if sbg else "enu"), section.orientation_covariance
+    if source == "tf":
+        return transform_poses(bag, path, section.tf_frames, about[0]), False
     if source == "odometry":
         return whole_poses(bag, path, [ODOMETRY], (section.odometry_topic, "odometry_topic"), *about), False
     if source == "poses":
         return whole_poses(bag, path, POSES, (section.pose_topic, "pose_topic"), *about), False
     if source == "inspva":
         return novatel_poses(bag, path, section.inspva_topic), True
+    if source == "applanix":
+        return applanix_poses(bag, path, section.applanix_topic), True
     topics = section.fix_topic, section.imu_topic
     return fixes_and_imu(bag, path, topics, section.maximum_fix_gap_s, *about), True
 
 
-def _source(bag: Any, section: RosbagSection) -> Literal["odometry", "poses", "inspva", "fixes"]:
+def _source(bag: Any, section: RosbagSection) -> Literal["tf", "odometry", "poses", "inspva", "applanix", "fixes"]:
     """The messages that the keys name, else the first kind that the bag has."""
+    if section.tf_frames:
+        return "tf"
     if section.odometry_topic:
         return "odometry"
     if section.pose_topic:
         return "poses"
     if section.inspva_topic:
         return "inspva"
-    if section.fix_topic or not topics_of(bag, [ODOMETRY, FIX, *NOVATEL, *POSES]):
+    if section.applanix_topic:
+        return "applanix"
+    if section.fix_topic:
         return "fixes"
     if topics_of(bag, [ODOMETRY]):
         return "odometry"
-    if topics_of(bag, [FIX]):
+    if topics_of(bag, [kind for group in FIX_KINDS for kind in group]):
         return "fixes"
-    return "inspva" if topics_of(bag, NOVATEL) else "poses"
+    if topics_of(bag, NOVATEL):
+        return "inspva"
+    if topics_of(bag, APPLANIX):
+        return "applanix"
+    return "poses" if topics_of(bag, POSES) else "fixes"

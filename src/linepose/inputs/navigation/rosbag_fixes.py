@@ -1,7 +1,8 @@
-"""Poses of a bag from NavSatFix, which has the position, and Imu, which has the attitude."""
+"""Poses of a bag from messages of the position (NavSatFix and the like) and of the attitude (Imu and the like)."""
 
+import logging
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -15,15 +16,12 @@ from linepose.inputs.navigation.rosbag_axes import (
     angle_jacobians,
     euler_of,
     known_orientations,
-    quaternion_of,
 )
 from linepose.inputs.navigation.rosbag_messages import messages
+from linepose.inputs.navigation.rosbag_vendors import FIX_KINDS, IMU_KINDS, SBG, attitude_of, fix_of, kinds_of
 from linepose.inputs.navigation.usable_rows import usable_rows
 
-FIX: Final = "sensor_msgs/msg/NavSatFix"
-IMU: Final = "sensor_msgs/msg/Imu"
-_NO_FIX: Final = -1
-_UNKNOWN_COVARIANCE: Final = 0
+log = logging.getLogger(__name__)
 
 
 def fixes_and_imu(
@@ -38,9 +36,10 @@ def fixes_and_imu(
 
     `topics` are those of the fixes and of the IMU, None for the bag's only one.
     """
-    fixes, geodetic, position_covariance, is_known = _fixes(bag, path, topics[0])
-    imu, quaternion, turns = _attitudes(bag, path, topics[1])
-    place = f"{path}, {IMU}"
+    fix_kinds, imu_kinds = kinds_of(bag, FIX_KINDS, topics[0]), kinds_of(bag, IMU_KINDS, topics[1])
+    fixes, geodetic, position_covariance, is_known = _fixes(bag, path, fix_kinds, topics[0])
+    imu, quaternion, turns = _attitudes(bag, path, imu_kinds, topics[1])
+    place = f"{path}, {imu_kinds[0]}"
     between = positions_between(imu, fixes, geodetic, maximum_gap_s, place)
     near = between.near
     euler = euler_of(quaternion[near], attitude_axes)
@@ -48,23 +47,32 @@ def fixes_and_imu(
     if not is_known or not turns.any():
         return poses, Covariances(np.empty(0, dtype=np.int64), np.empty((0, 6, 6)), place)
     row = nearest_rows(imu[near], fixes)
-    jacobian = angle_jacobians(euler[row], attitude_axes, covariance_of)
+    of = "roll_pitch_yaw" if imu_kinds[0].startswith(SBG) else covariance_of
+    jacobian = angle_jacobians(euler[row], attitude_axes, of)
     angles = jacobian @ turns[near][row] @ np.swapaxes(jacobian, -1, -2)
-    at_fixes = axes.joined_covariance(axes.enu_covariance(position_covariance), angles)
+    in_ned = fix_kinds[0].startswith(SBG) and attitude_axes == "ned"
+    positions = position_covariance if in_ned else axes.enu_covariance(position_covariance)
+    at_fixes = axes.joined_covariance(positions, angles)
     return poses, Covariances(fixes, at_fixes, place)
 
 
-def _fixes(bag: Any, path: Path, topic: str | None) -> tuple[np.ndarray, np.ndarray, np.ndarray, bool]:
+def _fixes(
+    bag: Any, path: Path, kinds: list[str], topic: str | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, bool]:
     """Times (F,), positions (F, 3) and covariances (F, 3, 3) of the fixes, and whether the covariances are known."""
-    place = f"{path}, {FIX}"
-    fix_us, geodetic, covariance, known = [], [], [], True
-    for stamp, message in messages(bag, path, [FIX], topic, "fix_topic"):
-        if message.status.status == _NO_FIX:
+    place = f"{path}, {kinds[0]}"
+    fix_us, geodetic, covariance, known, without = [], [], [], True, 0
+    for stamp, message in messages(bag, path, kinds, topic, "fix_topic"):
+        fix = fix_of(message)
+        if fix is None:
+            without += 1
             continue
         fix_us.append(stamp)
-        geodetic.append((message.latitude, message.longitude, message.altitude))
-        covariance.append(message.position_covariance)
-        known &= message.position_covariance_type != _UNKNOWN_COVARIANCE
+        geodetic.append(fix.geodetic)
+        covariance.append(np.zeros((3, 3)) if fix.covariance is None else fix.covariance)
+        known &= fix.covariance is not None
+    if without:
+        log.warning("%s: %d messages without a fix are left out", place, without)
     times, places = np.array(fix_us, dtype=np.int64), np.array(geodetic, dtype=float).reshape(-1, 3)
     rows = usable_rows(times, places, place)
     if len(rows) < 2:
@@ -73,14 +81,20 @@ def _fixes(bag: Any, path: Path, topic: str | None) -> tuple[np.ndarray, np.ndar
     return times[rows], places[rows], np.array(covariance, dtype=float).reshape(-1, 3, 3)[rows], known
 
 
-def _attitudes(bag: Any, path: Path, topic: str | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times (A,), quaternions (A, 4) and covariances (A, 3, 3) of the IMU's messages."""
-    place = f"{path}, {IMU}"
-    imu_us, quaternion, covariance = [], [], []
-    for stamp, message in messages(bag, path, [IMU], topic, "imu_topic"):
+def _attitudes(bag: Any, path: Path, kinds: list[str], topic: str | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times (A,), quaternions (A, 4) and covariances (A, 3, 3) of the attitudes."""
+    place = f"{path}, {kinds[0]}"
+    imu_us, quaternion, covariance, invalid = [], [], [], 0
+    for stamp, message in messages(bag, path, kinds, topic, "imu_topic"):
+        attitude = attitude_of(message)
+        if attitude is None:
+            invalid += 1
+            continue
         imu_us.append(stamp)
-        quaternion.append(quaternion_of(message.orientation))
-        covariance.append(message.orientation_covariance)
+        quaternion.append(attitude.quaternion)
+        covariance.append(attitude.covariance)
+    if invalid:
+        log.warning("%s: %d messages without a valid attitude are left out", place, invalid)
     turns = np.array(covariance, dtype=float).reshape(-1, 3, 3)
     if len(turns) and turns[0, 0, 0] < 0:
         found, expected = "messages without orientation (orientation_covariance[0] is -1)", "an attitude"

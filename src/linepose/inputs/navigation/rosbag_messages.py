@@ -51,4 +51,9 @@ def messages(bag: Any, path: Path, kinds: Sequence[str], topic: str | None, key:
     chosen = [one for one in bag.connections if one.msgtype in kinds and one.topic == (topic or topics[0])]
     for connection, _, raw in bag.messages(connections=chosen):
         message = bag.deserialize(raw, connection.msgtype)
-        yield message.header.stamp.sec * 1_000_000 + (message.header.stamp.nanosec + 500) // 1000, message
+        yield stamp_us(message.header), message
+
+
+def stamp_us(header: Any) -> int:
+    """Unix time (us) of a header."""
+    return int(header.stamp.sec * 1_000_000 + (header.stamp.nanosec + 500) // 1000)

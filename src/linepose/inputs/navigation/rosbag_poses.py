@@ -27,6 +27,7 @@ NOVATEL: Final = tuple(
     for package in ("novatel_oem7_msgs", "novatel_gps_msgs", "novatel_msgs")
     for name in ("INSPVA", "INSPVAX", "Inspva", "Inspvax")
 )
+APPLANIX: Final = ("applanix_msgs/msg/NavigationSolutionGsof49",)
 _USABLE: Final = (2, 3, 6, 7, "INS_HIGH_VARIANCE", "INS_SOLUTION_GOOD", "INS_SOLUTION_FREE", "INS_ALIGNMENT_COMPLETE")
 _SIGMAS: Final = ("latitude", "longitude", "height", "roll", "pitch", "azimuth")
 
@@ -63,6 +64,18 @@ def whole_poses(
     both[:, :3, :3] = world
     both[:, 3:, 3:] = angle_jacobians(euler, attitude_axes, covariance_of)
     return poses, Covariances(times, both @ matrices @ np.swapaxes(both, -1, -2), place)
+
+
+def applanix_poses(bag: Any, path: Path, topic: str | None) -> tuple[Poses, Covariances]:
+    """Poses of an Applanix receiver's GSOF 49: latitude, longitude, height, and angles (deg) that are ours."""
+    time_us, rows = [], []
+    for stamp, message in messages(bag, path, APPLANIX, topic, "applanix_topic"):
+        time_us.append(stamp)
+        place = message.lla
+        rows.append((place.latitude, place.longitude, place.altitude, message.roll, message.pitch, message.heading))
+    times, table = np.array(time_us, dtype=np.int64), np.array(rows, dtype=float).reshape(-1, 6)
+    poses = Poses(times, table[:, :3], np.deg2rad(table[:, 3:]), f"{path}, GSOF 49")
+    return poses, Covariances(times[:0], np.empty((0, 6, 6)), poses.place)
 
 
 def novatel_poses(bag: Any, path: Path, topic: str | None) -> tuple[Poses, Covariances]:

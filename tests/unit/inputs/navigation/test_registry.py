@@ -82,7 +82,7 @@ def test_format_that_is_brought_is_closed_too(tmp_path, installed):
         ),
         (
             {"file": "a"},
-            r"source.navigation.format: found None, expected one of bad, nmea, novatel, resonon, ",
+            r"source.navigation.format: found None, expected one of ardupilot, bad, nmea, novatel, px4, resonon, ",
         ),
         ({"format": "sbet", "file": "a", "weak": 3}, r"mine.yaml: source.navigation.weak: found an unknown key"),
         (
@@ -115,7 +115,16 @@ def test_our_own_formats_are_entry_points_as_any_other():
 
 def test_examples_of_the_page_are_configurations():
     examples = [yaml.safe_load(block)["navigation"] for block in blocks("yaml")]
-    assert [one["format"] for one in examples] == ["table", "novatel", "sbet", "nmea", "rosbag", "resonon"]
+    assert [one["format"] for one in examples] == [
+        "table",
+        "novatel",
+        "sbet",
+        "nmea",
+        "rosbag",
+        "px4",
+        "ardupilot",
+        "resonon",
+    ]
     for one in examples:
         validated(FORMATS.member(one["format"]).section, one, "docs/formats.md")
 

@@ -1,0 +1,70 @@
+"""Poses of an autopilot's log: attitudes and positions since it was switched on, and when that was by GPS."""
+
+import importlib
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+from linepose.inputs.navigation.positions_between import positions_between
+from linepose.inputs.navigation.record import Poses, check_increasing
+from linepose.inputs.navigation.usable_rows import usable_rows
+
+Stamps = NDArray[np.int64]
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class FlightLog:
+    """What an autopilot logged, at times (us) since it was switched on.
+
+    `euler_rad` (A, 3) at `attitude_us`; `geodetic` (F, 3), latitude, longitude (deg), height (m), at `fix_us`; and
+    `unix_us` (G,) that GPS said at `gps_us`. `names` are those of the three kinds of message.
+    """
+
+    attitude_us: Stamps
+    euler_rad: Floats
+    fix_us: Stamps
+    geodetic: Floats
+    gps_us: Stamps
+    unix_us: Stamps
+    names: tuple[str, str, str]
+
+
+def package(name: str, path: Path) -> ModuleType:
+    """A package of the extra `autopilot`; raises InputError that names it where it is not installed."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        found, expected = f"no package {name.partition('.')[0]}", "it, to read an autopilot's log"
+        raise InputError(str(path), found, expected, "pip install 'linepose[autopilot]'") from None
+
+
+def autopilot_poses(flight: FlightLog, path: Path, maximum_gap_s: float) -> Poses:
+    """Poses at the times of the attitudes, in Unix time, with positions linear between those of the log.
+
+    Raises InputError naming the message that the log lacks.
+    """
+    for name, times in zip(flight.names, (flight.attitude_us, flight.fix_us, flight.gps_us), strict=True):
+        if len(times) < 2:
+            found, expected = f"{len(times)} messages {name}", "two or more"
+            raise InputError(str(path), found, expected, f"log {name} throughout the drive, with a fix")
+    started_us = int(np.median(flight.unix_us - flight.gps_us))
+    log.warning("%s: times are those of the GPS messages (%s), which come late by up to 0.2 s", path, flight.names[2])
+    fix_us, geodetic = _used(flight.fix_us, flight.geodetic, f"{path}, {flight.names[1]}")
+    attitude_us, euler = _used(flight.attitude_us, flight.euler_rad, f"{path}, {flight.names[0]}")
+    place = f"{path}, {flight.names[0]}"
+    between = positions_between(attitude_us, fix_us, geodetic, maximum_gap_s, place)
+    return Poses(attitude_us[between.near] + started_us, between.position, euler[between.near], place, between.gap_key)
+
+
+def _used(times: Stamps, values: Floats, place: str) -> tuple[Stamps, Floats]:
+    rows = usable_rows(times, values, place)
+    check_increasing(times[rows], place)
+    return times[rows], values[rows]

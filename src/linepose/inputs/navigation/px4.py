@@ -1,0 +1,95 @@
+"""Navigation format `px4`: logs of PX4 autopilots (.ulg), read by pyulog.
+
+Attitudes are of vehicle_attitude (quaternion from forward, right, down to north, east, down), positions of
+vehicle_global_position, and the start of the clock is that of vehicle_gps_position or sensor_gps. No covariances.
+"""
+
+import logging
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import numpy as np
+from pydantic import Field, PositiveFloat
+
+from linepose.errors import InputError
+from linepose.inputs.navigation.autopilot_poses import FlightLog, autopilot_poses, package
+from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
+from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
+from linepose.inputs.navigation.record import NavigationRecord, geodetic_record
+from linepose.inputs.navigation.rosbag_axes import euler_of
+
+_MAGIC: Final = b"ULog\x01\x12\x35"
+_ATTITUDE, _POSITION, _GPS = "vehicle_attitude", "vehicle_global_position", ("vehicle_gps_position", "sensor_gps")
+_FIX_3D: Final = 3
+
+log = logging.getLogger(__name__)
+
+Columns = dict[str, np.ndarray]
+
+
+class Px4Section(GeodeticSection):
+    """Keys of the format `px4`."""
+
+    format: Literal["px4"] = Field(description="`px4`: logs of a PX4 autopilot (.ulg), with linepose[autopilot].")
+    maximum_fix_gap_s: PositiveFloat = Field(
+        DEFAULT_GAP_S, description="Longest time between two positions over which they are interpolated (s)."
+    )
+
+
+def read(section: Px4Section, folder: Path) -> NavigationRecord:
+    """The record of the logs; raises InputError where pyulog is not installed or a message is missing."""
+    poses = [autopilot_poses(_flight(path), path, section.maximum_fix_gap_s) for path in section.paths(folder)]
+    return geodetic_record(poses, [], section)
+
+
+def _is_log(path: Path) -> dict[str, Any] | None:
+    if path.is_dir():
+        return None
+    with path.open("rb") as file:
+        return {} if file.read(len(_MAGIC)) == _MAGIC else None
+
+
+FORMAT: Final = NavigationFormat("px4", Px4Section, read, has_covariances=False, recognise=_is_log)
+
+
+def _flight(path: Path) -> FlightLog:
+    pyulog = package("pyulog", path)
+    try:
+        content = pyulog.ULog(str(path), [_ATTITUDE, _POSITION, *_GPS], disable_str_exceptions=True)
+    except Exception as error:  # pyulog has no kind of its own
+        found = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(str(path), found[:200], "a whole PX4 log (.ulg)", "restore the log") from None
+    tables: dict[str, Columns] = {one.name: one.data for one in reversed(content.data_list)}  # the first instance
+    attitude, position = tables.get(_ATTITUDE, {}), tables.get(_POSITION, {})
+    gps_name = next((name for name in _GPS if name in tables), _GPS[0])
+    gps = tables.get(gps_name, {})
+    quaternion = np.stack([_column(attitude, f"q[{at}]") for at in (1, 2, 3, 0)], axis=-1)
+    usable = _column(gps, "time_utc_usec") > 0
+    usable &= _column(gps, "fix_type") >= _FIX_3D
+    if not usable.all():
+        log.warning("%s: %d GPS messages without a fix are left out", path, np.sum(~usable))
+    return FlightLog(
+        _times(attitude, "timestamp_sample"),
+        euler_of(quaternion, "ned"),
+        _times(position, "timestamp_sample"),
+        np.stack([_column(position, "lat"), _column(position, "lon"), _height(position)], axis=-1),
+        _times(gps, "timestamp")[usable],
+        _column(gps, "time_utc_usec")[usable].astype(np.int64),
+        (_ATTITUDE, _POSITION, gps_name),
+    )
+
+
+def _column(table: Columns, name: str) -> np.ndarray:
+    return np.asarray(table.get(name, np.empty(0)))
+
+
+def _times(table: Columns, name: str) -> np.ndarray:
+    """Times (us): those of the sample where the log has them, else those of the message."""
+    sampled = table.get(name)
+    known = sampled is not None and len(sampled) and np.all(sampled > 0)
+    return _column(table, name if known else "timestamp").astype(np.int64)
+
+
+def _height(position: Columns) -> np.ndarray:
+    """Heights (m) above the ellipsoid where the log has them, else above the sea."""
+    return _column(position, "alt_ellipsoid" if "alt_ellipsoid" in position else "alt").astype(float)
