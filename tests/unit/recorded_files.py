@@ -52,22 +52,30 @@ def write_platform_files(folder: Path, platform: Platform, n_observations: int =
 
 
 def write_scan_files(folder: Path, platform: Platform, n_observations: int) -> None:
-    """The files of the first passes of a simulated platform as scans without a picture: all that a check reads."""
+    """The files of the first passes of a simulated platform as scans: all that a check reads.
+
+    Their pictures are dark, with a dot under each label.
+    """
     assert platform.simulation is not None
     settings = replace(platform.simulation, passes=platform.simulation.passes[:n_observations], faults=())
     camera = platform.intrinsics()
     (folder / "scans").mkdir(parents=True)
     navigation_log(settings).to_parquet(folder / "navigation.parquet", index=False)
     write_covariances(folder / "covariances.csv", settings)
-    labels(camera, settings).to_csv(folder / "labels.csv", index=False, float_format="%.2f")
+    labelled = labels(camera, settings)
+    labelled.to_csv(folder / "labels.csv", index=False, float_format="%.2f")
     for number in range(1, n_observations + 1):
         stamps = time_us(settings, line_times_s(camera, settings, number))
         path = folder / "scans" / f"observation-{number:02d}"
         write_line_times(path, stamps)
         size = {"samples": camera.n_pixels, "lines": len(stamps), "bands": 1}
         write_envi_header(str(path.with_suffix(".hdr")), size | _ENVI)
-        with path.with_suffix(".bil").open("wb") as data:
-            data.truncate(2 * camera.n_pixels * len(stamps))
+        picture = np.zeros((len(stamps), camera.n_pixels), dtype="<u2")
+        mine = labelled[labelled["observation"] == number]
+        for line, u in np.rint(mine[["line", "u_px"]].to_numpy()).astype(int):
+            picture[max(line - 1, 0) : line + 2, max(u - 1, 0) : u + 2] += 500
+            picture[line, u] += 500
+        picture.tofile(path.with_suffix(".bil"))
 
 
 _ENVI = {"header offset": 0, "file type": "ENVI Standard", "data type": 12, "interleave": "bil", "byte order": 0}

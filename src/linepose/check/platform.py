@@ -13,6 +13,7 @@ from linepose.check.camera import camera_findings
 from linepose.check.conventions.examine import HandSigmas, RecordingAt
 from linepose.check.conventions.findings import convention_findings
 from linepose.check.conventions.recording import Recording
+from linepose.check.exchanges import exchange_findings
 from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, error, of_fault, ok
 from linepose.check.hand_measured import hand_findings
 from linepose.check.labels import count_findings, position_findings
@@ -165,6 +166,8 @@ def geometry_findings(
     if any(finding.level == Level.ERROR for finding in more):
         return findings, ()
     prediction = predict(survey, camera, hand, settings.pose_prior() is not None, point_m)
+    if prediction.adjusted is not None:
+        findings += exchange_findings(survey, camera, prediction.adjusted)
     return [*findings, *prediction.findings], prediction.sigmas
 
 

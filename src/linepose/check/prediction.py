@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from linepose.adjustment.result import Adjustment
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.arrays import Floats
 from linepose.check.finding import Finding, PredictedSigma, error, ok, warning
@@ -31,10 +32,14 @@ _DRAWS: Final = AdjustmentSettings(n_draws=60, n_samples=10)
 
 @dataclass(frozen=True)
 class Prediction:
-    """Predicted sigmas of the six numbers, rotations as small turns about the body's axes, and what was found."""
+    """Predicted sigmas of the six numbers, rotations as small turns about the body's axes, and what was found.
+
+    `adjusted` is what the observations as they are give, None where it is not known.
+    """
 
     sigmas: tuple[PredictedSigma, ...]
     findings: tuple[Finding, ...]
+    adjusted: Adjustment | None = None
 
 
 def predict(survey: Survey, camera: Camera, hand: HandMeasured, prior: bool, point_m: Floats) -> Prediction:
@@ -68,7 +73,7 @@ def predict(survey: Survey, camera: Camera, hand: HandMeasured, prior: bool, poi
     large = [one for one in sigmas if one.predicted > TOO_LARGE * one.hand]
     if not large:
         told = f"all below half of the hand measurement's; {spread_in_words(survey)}"
-        return Prediction(sigmas, (ok(_SUBJECT, told),))
+        return Prediction(sigmas, (ok(_SUBJECT, told),), adjusted)
     words = identifiability(names, in_axes, by_hand).weakest_in_words()
     worst = max(large, key=lambda one: one.predicted / one.hand)
     told = ", ".join(f"{one.name} {size(one.predicted, one.unit)} ({size(one.hand, one.unit)})" for one in large)
@@ -77,7 +82,7 @@ def predict(survey: Survey, camera: Camera, hand: HandMeasured, prior: bool, poi
     ranked = best_motions(motions(ideal, promise, point_m), sigmas.index(worst))
     ways = "; or ".join(f"{way}: {worst.name} to {size(value, worst.unit)}" for way, value in ranked[:2])
     advice = f"drive four more passes {ways}" if ways else "add passes from other sides and with other tilts"
-    return Prediction(sigmas, (warning(_SUBJECT, found, advice),))
+    return Prediction(sigmas, (warning(_SUBJECT, found, advice),), adjusted)
 
 
 def size(value: float, unit: str) -> str:

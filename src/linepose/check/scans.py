@@ -1,4 +1,4 @@
-"""Scans, their time stamps and labels, from headers and small files: no image is read."""
+"""Scans, their time stamps and labels, from headers and small files; pixels are read around labels alone."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from linepose.check.clock import header_findings
+from linepose.check.dots import dot_findings
 from linepose.check.finding import Finding, Level, error, numbers, of_fault, of_faults, ok, warning
 from linepose.check.labels import sensor_findings
 from linepose.errors import InputError
@@ -16,6 +17,7 @@ from linepose.inputs.scans import header_time
 from linepose.inputs.scans.line_times import line_times_of
 from linepose.inputs.scans.scan_files import scan_size
 from linepose.inputs.source import ScansSection
+from linepose.inputs.targets.refine import AS_LABELLED, REFINEMENTS
 
 
 def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[list[Finding], pd.DataFrame | None]:
@@ -58,6 +60,8 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
     if unlabelled:
         found = f"scan {numbers(unlabelled)}: no label, left out"
         label_findings.append(warning("labels", found, "label it, or add it to source.left_out"))
+    if points is not None and source.refinement != AS_LABELLED:
+        label_findings += dot_findings(scans, labels, REFINEMENTS[source.refinement])
     return [*findings, *label_findings], points
 
 

@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
+from linepose.check.dots import shared_findings
 from linepose.check.finding import Finding, error, of_fault, of_faults
 from linepose.check.labels import pose_findings, repeated_findings, sensor_findings
 from linepose.errors import InputError
@@ -37,9 +38,10 @@ def view_findings(
     if any(finding.level > 0 for finding in findings) or raw is None:
         return findings, None
     try:
-        return findings, read_labelled_views(paths, n_pixels)
+        points = read_labelled_views(paths, n_pixels)
     except InputError as fault:
         return [*findings, of_fault("view files", fault)], None
+    return [*findings, *shared_findings(points)], points
 
 
 def _raw_points(paths: list[Path]) -> tuple[pd.DataFrame | None, list[InputError]]:

@@ -83,9 +83,10 @@ class ScansSection(Settings):
         description="Where labels hold the point's name: `label`, `group_id` (LabelMe), or the name of an attribute; "
         "if not given, group_id or an attribute id, point or point_id, else the label.",
     )
-    refinement: Literal["centroid", "peak"] = Field(
+    refinement: Literal["centroid", "peak", "none"] = Field(
         "centroid",
-        description="Centre of a dot: intensity-weighted mean, or the enlarged patch's peak as in the paper.",
+        description="Centre of a dot: intensity-weighted mean, or the enlarged patch's peak as in the paper; none: the "
+        "place as it was labelled, of points that are no dots.",
     )
     navigation: Navigation = Field(
         "navigation.parquet",

@@ -15,7 +15,7 @@ from linepose.inputs.scans.line_times import line_times_of
 from linepose.inputs.scans.scan_files import read_scan
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.inputs.targets.detectors import detector_of
-from linepose.inputs.targets.refine import METHODS
+from linepose.inputs.targets.refine import REFINEMENTS
 from linepose.survey.navigation import NavigationCovariances, associate_covariances
 from linepose.survey.navigation_log import POSE_AT, NavigationLog, associate_poses
 from linepose.survey.observations import check_determined, survey_from_table
@@ -29,7 +29,7 @@ def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
     source, n_pixels = platform.source, platform.camera.n_pixels
     if isinstance(source, LabelledViewsSection):
         return read_labelled_views(select_views(folder, source.views, source.first, source.step), n_pixels)
-    scans, refine = select_scans(folder, source.scans, source.left_out), METHODS[source.refinement]
+    scans, refine = select_scans(folder, source.scans, source.left_out), REFINEMENTS[source.refinement]
     line_times = line_times_of(source)
     if source.points == "detection":
         return detected_points(scans, detector_of(platform.target, refine), n_pixels, line_times)

@@ -69,6 +69,39 @@ def twice(root):
     path.write_text(path.read_text() + path.read_text().splitlines()[0] + "\n")
 
 
+def change_view(root, change):
+    """Apply a change to the table of the third view file."""
+    path = sorted((root / "data" / "mine" / "labelled_points").glob("*.csv"))[2]
+    table = pd.read_csv(path, header=None, names=VIEW_COLUMNS)
+    change(table)
+    table.to_csv(path, header=False, index=False)
+
+
+def exchanged(root):
+    change_view(root, lambda t: t.__setitem__("point", t["point"].replace({6: 7, 7: 6})))
+
+
+def wrong_dot(root):
+    """Point 12's label lies where 11 was, which has none."""
+
+    def change(t):
+        t["point"] = t["point"].replace({11: 12, 12: 11})
+        t.loc[t["point"] == 11, "u_px"] = np.nan
+
+    change_view(root, change)
+
+
+def one_dot(root):
+    def change(t):
+        t.loc[t["point"] == 6, t.columns != "point"] = t[t["point"] == 7].drop(columns="point").to_numpy()
+
+    change_view(root, change)
+
+
+def mistyped(root):
+    change_view(root, lambda t: t.__setitem__("point", t["point"].astype(str).replace({"6": "1e6"})))
+
+
 def lopsided(root):
     def change(times, matrices):
         matrices[5, 0, 1] += 0.5 * matrices[5, 0, 0]
@@ -147,6 +180,10 @@ PLANTED = {
     latitude: (Level.ERROR, "body pose", "latitude and longitude", "metres"),
     other_sensor: (Level.ERROR, "labels", "outside the sensor's 320", "camera.n_pixels"),
     twice: (Level.ERROR, "labels", r"twice in an observation.*view003.csv, row 16", "keep one row"),
+    exchanged: (Level.WARNING, "labels", "exchanged: 6 and 7 in observation 3$", "exchange the two labels"),
+    wrong_dot: (Level.WARNING, "labels", "another point is expected: 12 at 11 in observation 3$", "correct or remove"),
+    one_dot: (Level.ERROR, "labels", "on one dot: [67] and [67] of observation 3$", "on its own dot"),
+    mistyped: (Level.WARNING, "labels", "point 1000000: seen once only", "check its name"),
     lopsided: (Level.ERROR, "covariances", "row 6", "column order"),
     square_degrees: (Level.WARNING, "covariances", "angle sigmas", "deg2"),
     hours: (Level.ERROR, "time", "no point lies within", "time zone of 10 h"),

@@ -12,7 +12,7 @@ from linepose.inputs.labels.labels import read_labels
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.scans.scan_files import read_intensity
 from linepose.inputs.source import ScansSection
-from linepose.inputs.targets.refine import METHODS, Refine
+from linepose.inputs.targets.refine import METHODS, REFINEMENTS, Refine
 
 
 def label_platform(folder: Path, source: ScansSection, labels_path: Path | None = None) -> pd.DataFrame:
@@ -22,7 +22,7 @@ def label_platform(folder: Path, source: ScansSection, labels_path: Path | None 
     observation, point, u_px, line. Raises InputError where there is no scan, no display, or the file is not our CSV.
     """
     path = folder / source.labels if labels_path is None else labels_path
-    return label(select_scans(folder, source.scans, source.left_out), path, METHODS[source.refinement])
+    return label(select_scans(folder, source.scans, source.left_out), path, REFINEMENTS[source.refinement])
 
 
 def label(scans: Mapping[int, Path], labels_path: Path, refine: Refine = METHODS["centroid"]) -> pd.DataFrame:

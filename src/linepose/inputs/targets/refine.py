@@ -18,6 +18,8 @@ from linepose.inputs.targets.refine_peak import peak
 Refine = Callable[[Intensity, float, float], tuple[float, float] | None]
 
 METHODS: Final[dict[str, Refine]] = {"peak": peak, "centroid": centroid}
+AS_LABELLED: Final = "none"
+REFINEMENTS: Final[dict[str, Refine]] = {**METHODS, AS_LABELLED: lambda _, u_px, line: (u_px, line)}
 
 
 def refine_points(method: Refine, intensity: Intensity, position: ArrayLike) -> Floats:
