@@ -11,6 +11,10 @@ from typing import Any, Final
 _ASCII_CUT: Final = re.compile(rb"[#%][^\r\n]*\*[0-9a-fA-F]{8}\n")  # a message whose CR LF became LF
 
 
+_MOST_TOGETHER: Final = 100_000
+_NMEA: Final = re.compile(rb"\$[A-Z]{2,}[ -#%-)+-~]*(\*[0-9A-Fa-f]{2})?\s*")  # of another port's log in the same file
+
+
 @dataclass(frozen=True)
 class UnknownBytes:
     """So many bytes of a log that belong to no message."""
@@ -23,13 +27,25 @@ def messages(path: Path) -> Iterator[Any]:
     from novatel_edie import UnknownBytes as Unknown
     from novatel_edie.oem import FileParser
 
+    strange = b""  # in pieces, as the decoder gives up on them
     with _with_line_ends(path) as framed:
         parser = FileParser(str(framed))
         for message in parser:
-            yield UnknownBytes(len(message.data)) if isinstance(message, Unknown) else message
+            if isinstance(message, Unknown):
+                strange += bytes(message.data)
+            if strange and (not isinstance(message, Unknown) or len(strange) > _MOST_TOGETHER):
+                yield UnknownBytes(_strange(strange))
+                strange = b""
+            if not isinstance(message, Unknown):
+                yield message
         left = int(str(parser.flush()))  # what the file ends with and is no whole message
-        if left:
-            yield UnknownBytes(left)
+        yield UnknownBytes(_strange(strange) + left)
+
+
+def _strange(data: bytes) -> int:
+    """How many of these bytes are no NMEA sentences, nor blanks beside those."""
+    left = _NMEA.sub(b"", data)
+    return len(data) if left == data else len(left.strip())
 
 
 @contextmanager

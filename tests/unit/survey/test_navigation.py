@@ -111,15 +111,24 @@ def test_names_the_row_of_a_matrix_that_is_no_covariance(log, matrix, fault):
     assert str(error.value) == f"{path}, row 2: {fault}"
 
 
-@pytest.mark.parametrize("step_us", [0, -1_000_000])
-def test_names_the_row_of_a_time_that_does_not_increase(log, step_us):
-    path = log((START_US, matrix_12()), (START_US + 5, matrix_12()), (START_US + 5 + step_us, matrix_12()))
+def test_names_the_row_of_a_second_matrix_at_one_time(log):
+    path = log((START_US, matrix_12()), (START_US + 5, matrix_12()), (START_US + 5, 2 * matrix_12()))
     with pytest.raises(InputError) as error:
         read_covariances(path, ATTITUDE)
     assert str(error.value) == (
-        f"{path}, row 3, column 1: found time {START_US + 5 + step_us}, expected a time after the row before it "
-        f"({START_US + 5}); sort the rows by time and remove repeated ones"
+        f"{path}, row 3, column 1: found time {START_US + 5} with another matrix, expected one matrix at a time; "
+        "remove one of the rows"
     )
+
+
+def test_rows_out_of_order_are_sorted_and_repeats_passed_over(log, caplog):
+    path = log(
+        (START_US, matrix_12()), (START_US + 9, matrix_12()), (START_US + 5, 2 * matrix_12()), (START_US, matrix_12())
+    )
+    found = read_covariances(path, ATTITUDE)
+    np.testing.assert_array_equal(found.time_us, START_US + np.array([0, 5, 9]))
+    np.testing.assert_allclose(found.covariance[1], 2 * found.covariance[0])
+    assert "1 records that repeat the one before are passed over; 2 records behind later ones are sorted" in caplog.text
 
 
 def test_names_a_time_in_seconds(log):

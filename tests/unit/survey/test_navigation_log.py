@@ -114,12 +114,23 @@ def test_observation_in_a_gap_is_named():
     assert len(associate_poses(points(inside), log_of(values), nearest_pose, 0.2)) == 1
 
 
+def test_rows_out_of_order_are_sorted_and_repeats_passed_over(tmp_path, caplog):
+    table().iloc[[0, 2, 1, 1, 3]].to_csv(tmp_path / "log.csv", index=False)
+    log = read_navigation_log(tmp_path / "log.csv")
+    np.testing.assert_array_equal(log.time_us, table()["time_us"].to_numpy()[:4])
+    np.testing.assert_allclose(log.position_m[:, 0], table()["north_m"].to_numpy()[:4])
+    assert "1 records that repeat the one before are passed over; 2 records behind later ones are sorted" in caplog.text
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [
         (lambda t: t.drop(columns="yaw_rad"), "no column yaw_rad"),
         (lambda t: t.iloc[:1], "1 rows, expected two or more"),
-        (lambda t: t.iloc[[0, 2, 1, 3]], r"row 3, time_us: found time .*, expected a time after"),
+        (
+            lambda t: pd.concat([t.iloc[:2], t.iloc[[1]].assign(down_m=9.0), t.iloc[2:]]),
+            r"row 3, time_us: found time .* with another pose, expected one pose at a time; remove one of the rows",
+        ),
         (lambda t: t.assign(down_m=np.where(t.index == 4, np.nan, 0.0)), "row 5, down_m: found no number"),
         (lambda t: t.assign(yaw_rad=180.0), r"row 1, roll_rad to yaw_rad: found angles .*, expected radians"),
         (lambda t: t.assign(time_us=t["time_us"] // 1000), "they look like milliseconds"),

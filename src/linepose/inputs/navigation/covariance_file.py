@@ -8,6 +8,7 @@ import numpy as np
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.inputs.navigation.usable_rows import usable_rows
 from linepose.inputs.number_files import check_microseconds, read_numbers
 from linepose.survey.navigation import NavigationCovariances
 
@@ -19,25 +20,21 @@ _NEGATIVE: Final = 1e-5  # as an eigenvalue of the correlations: what rounding t
 def read_covariances(path: Path, attitude_columns: Sequence[int]) -> NavigationCovariances:
     """Covariances of a file with rows of time (us) and a row-major 12x12 matrix, position in its rows 0-2.
 
-    `attitude_columns` are the three rows and columns of roll, pitch and yaw. Raises InputError naming the row of a
-    time that does not increase, or of a matrix that is not symmetric or not positive semi-definite.
+    `attitude_columns` are the three rows and columns of roll, pitch and yaw. Rows out of order are sorted and exact
+    repeats passed over, and both counted. Raises InputError naming the row of a second matrix at one time, or of a
+    matrix that is not symmetric or not positive semi-definite.
     """
     time_us, numbers = read_numbers(path, 1 + _SIZE * _SIZE, "time (us) and 144 covariances")
     check_microseconds(time_us, path)
-    backwards = np.flatnonzero(np.diff(time_us) <= 0)
-    if backwards.size:
-        row = int(backwards[0]) + 1
-        raise InputError(
-            f"{path}, row {row + 1}, column 1",
-            f"time {time_us[row]}",
-            f"a time after the row before it ({time_us[row - 1]})",
-            "sort the rows by time and remove repeated ones",
-        )
+    rows = usable_rows(time_us, np.nan_to_num(numbers), str(path))
+    for row in np.flatnonzero(np.diff(time_us[rows]) == 0)[:1]:
+        place, found = f"{path}, row {rows[row + 1] + 1}, column 1", f"time {time_us[rows[row]]} with another matrix"
+        raise InputError(place, found, "one matrix at a time", "remove one of the rows")
     keep = [0, 1, 2, *attitude_columns]
     covariance = numbers.reshape(-1, _SIZE, _SIZE)[:, keep][:, :, keep]
     for row, matrix in enumerate(covariance):
         _check_covariance(matrix, keep, f"{path}, row {row + 1}")
-    return NavigationCovariances(time_us, covariance, str(path))
+    return NavigationCovariances(time_us[rows], covariance[rows], str(path))
 
 
 def _check_covariance(matrix: Floats, names: Sequence[int], place: str) -> None:

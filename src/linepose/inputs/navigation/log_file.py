@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.inputs.navigation.usable_rows import usable_rows
 from linepose.inputs.number_files import check_microseconds
 from linepose.survey.navigation_log import NavigationLog
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
@@ -21,20 +22,20 @@ _FEWEST_ROWS: Final = 2
 def read_navigation_log(path: Path) -> NavigationLog:
     """The log of a Parquet file, or a CSV file with a heading: time_us, north_m, east_m, down_m, roll_rad, ...
 
-    Raises InputError naming the row of a time that does not increase or a value that is no number.
+    Rows out of order are sorted and exact repeats passed over, and both counted. Raises InputError naming the row of a
+    second pose at one time, or a value that is no number.
     """
     table = _read_columns(path)
     time_us = table["time_us"].to_numpy()
     check_microseconds(time_us, path)
-    backwards = np.flatnonzero(np.diff(time_us) <= 0)
-    if backwards.size:
-        row = int(backwards[0]) + 1
-        expected = f"a time after the row before it ({time_us[row - 1]})"
-        raise InputError(f"{path}, row {row + 1}, time_us", f"time {time_us[row]}", expected, "sort the rows by time")
     position = np.stack([table[name].to_numpy() for name in POSITION_COLUMNS], axis=-1)
     euler = np.stack([table[name].to_numpy() for name in EULER_COLUMNS], axis=-1)
     _check_values(path, np.hstack([position, euler]))
-    return NavigationLog(time_us, position, euler, str(path))
+    rows = usable_rows(time_us, np.hstack([position, euler]), str(path))
+    for row in np.flatnonzero(np.diff(time_us[rows]) == 0)[:1]:
+        place, found = f"{path}, row {rows[row + 1] + 1}, time_us", f"time {time_us[rows[row]]} with another pose"
+        raise InputError(place, found, "one pose at a time", "remove one of the rows")
+    return NavigationLog(time_us[rows], position[rows], euler[rows], str(path))
 
 
 def _read_columns(path: Path) -> pa.Table:

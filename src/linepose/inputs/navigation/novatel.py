@@ -156,7 +156,7 @@ def _poses(messages: Messages, kind: str) -> Poses:
         found = f"{messages.unusable} {kind} messages without an INS solution" if messages.unusable else f"no {kind}"
         remedy = f"log {kind} messages after the INS has aligned"
         raise InputError(str(messages.path), found, "INSPVA, INSPVAS or INSPVAX messages with a solution", remedy)
-    table = _in_turn(rows)
+    table = _in_turn(rows, messages.path)
     time_us = gps_time.unix_from_week(table[:, 0], table[:, 1])
     return Poses(time_us, table[:, 2:5], np.deg2rad(table[:, 5:8]), str(messages.path))
 
@@ -165,7 +165,7 @@ def _covariances(messages: Messages, poses: Poses, kind: str) -> Covariances:
     rows = messages.rows.get(kind, [])
     if not rows:
         return Covariances(poses.time_us[:0], np.empty((0, 6, 6)), str(messages.path))
-    table = _in_turn(rows)
+    table = _in_turn(rows, messages.path)
     time_us = gps_time.unix_from_week(table[:, 0], table[:, 1])
     if kind == "INSCOV":
         euler = poses.euler_rad[nearest_rows(poses.time_us, time_us)]
@@ -182,8 +182,10 @@ def _from_local_level(values: Floats, euler_rad: Floats) -> Floats:
     return axes.joined_covariance(position, angles)
 
 
-def _in_turn(rows: list[Row]) -> Floats:
-    """The rows as a table, without those that repeat the time before: a log may hold the short and the long form."""
+def _in_turn(rows: list[Row], path: Path) -> Floats:
+    """The rows as a table, without those of the time before: a log may hold the short and the long form of each."""
     table = np.array(rows, dtype=float)
     repeated = np.all(np.diff(table[:, :2], axis=0) == 0, axis=1)
+    if repeated.any():
+        log.info("%s: %d messages at the time of the one before are passed over", path, np.count_nonzero(repeated))
     return table[np.concatenate([[True], ~repeated])]

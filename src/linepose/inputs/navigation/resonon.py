@@ -5,9 +5,11 @@ two of no use, 5 where the row may be used and 0 where not, and more that depend
 positive with the right wing up, the opposite of ours. The files hold no covariances.
 """
 
+import logging
 from pathlib import Path
 from typing import Any, Final, Literal
 
+import numpy as np
 from pydantic import Field
 
 from linepose.inputs.gps_time import TimeScale
@@ -16,6 +18,8 @@ from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.record import NavigationRecord, Poses, geodetic_record
 
 _USE_COLUMN: Final = 9
+
+log = logging.getLogger(__name__)
 
 
 class ResononSection(GeodeticSection):
@@ -42,6 +46,9 @@ FORMAT: Final = NavigationFormat("resonon", ResononSection, read, has_covariance
 def _poses(path: Path, time_scale: TimeScale) -> Poses:
     rows = location_rows(path)
     if rows.shape[1] > _USE_COLUMN:
-        rows = rows[rows[:, _USE_COLUMN] != 0]
+        usable = rows[:, _USE_COLUMN] != 0
+        if not usable.all():
+            log.warning("%s: %d rows that the recorder marks as of no use are left out", path, np.sum(~usable))
+        rows = rows[usable]
     euler = rows[:, 1:4] * [-1.0, 1.0, 1.0]
     return Poses(location_unix_us(rows[:, 0], time_scale), rows[:, [5, 4, 6]], euler, str(path))

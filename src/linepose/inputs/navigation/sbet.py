@@ -50,10 +50,9 @@ def read(section: SbetSection, folder: Path) -> NavigationRecord:
 
 
 def _is_trajectory(path: Path) -> dict[str, Any] | None:
-    """A file of whole records under a name that such trajectories have."""
-    if path.suffix.lower() not in {".sbet", ".out"} or path.stat().st_size % (8 * _TRAJECTORY):
-        return None
-    return {}
+    """A file that is named .sbet, or .out where it has whole records."""
+    is_whole = path.suffix.lower() == ".out" and path.stat().st_size % (8 * _TRAJECTORY) == 0
+    return {} if is_whole or path.suffix.lower() == ".sbet" else None
 
 
 FORMAT: Final = NavigationFormat("sbet", SbetSection, read, recognise=_is_trajectory)

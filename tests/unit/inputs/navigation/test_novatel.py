@@ -108,6 +108,15 @@ def test_poses_before_alignment_are_left_out(tmp_path, drive, caplog):
     assert "3 poses without an INS solution are left out" in caplog.text
 
 
+@pytest.mark.parametrize("is_binary", [True, False])
+def test_nmea_between_messages_alarms_nobody(tmp_path, drive, caplog, is_binary):
+    nmea = b"$GPGGA,100000.00,3353.352,S,15111.622,E,4,12,0.8,20.000,M,22.500,M,01,0000*5F\r\n"
+    messages = [nmea + novatel_writer.pva("INSPVA", drive, row, is_binary) for row in range(10)]
+    (tmp_path / "a.gps").write_bytes(b"".join(messages))
+    assert len(read_navigation(section("a.gps"), tmp_path).log.time_us) == 10
+    assert not caplog.text
+
+
 def test_what_is_no_message_is_told(tmp_path, drive, caplog):
     messages = [novatel_writer.pva("INSPVAS", drive, row, True) for row in range(10)]
     broken = bytearray(messages[4])
