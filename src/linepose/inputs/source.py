@@ -10,6 +10,7 @@ from typing import Any, Literal
 from pydantic import Field, PositiveFloat, PositiveInt, field_validator, model_validator
 
 from linepose.inputs.navigation.registry import Navigation
+from linepose.inputs.scans.envi_header import data_files
 from linepose.settings import Settings
 
 
@@ -126,6 +127,7 @@ class ScansSection(Settings):
         elif self.time_stamps == "headwall":
             beside |= {path for scan in scans for path in scan.parent.glob("frameIndex_*.txt")}
         beside |= {self.time_path(scan, "{name}-times.csv") for scan in scans}
+        beside |= {scan.parent / name for scan in scans for name in data_files(scan)}
         labels = set(folder.glob(self.labels)) or {folder / self.labels} if self.points == "labels" else set()
         navigation = self.navigation
         log = {folder / navigation} if isinstance(navigation, str) else navigation.files(folder)

@@ -15,7 +15,8 @@ from spectral.io.bsqfile import BsqFile
 from spectral.io.spyfile import SpyFile
 
 from linepose.errors import InputError
-from linepose.inputs.scans.envi_header import EnviHeader, read_envi_header
+from linepose.inputs.scans.envi_header import read_envi_header
+from linepose.inputs.scans.header_layout import EnviHeader
 from linepose.inputs.scans.image_size import check_image_size, check_width
 
 _CHUNK_BYTES: Final = 64_000_000
@@ -23,6 +24,7 @@ _BAND_AXES: Final = {"bil": 1, "bip": 2, "bsq": 0}  # axis of the bands in the f
 _FILES: Final = {"bil": BilFile, "bip": BipFile, "bsq": BsqFile}
 _ENDINGS: Final = ("img", "dat", "hyspex", "raw", "bin", "bil", "bip", "bsq")
 _OTHERS: Final = {".hdr", ".csv", ".txt", ".png", ".jpg", ".jpeg", ".json", ".xml", ".nav", ".lcf", ".times", ".tif"}
+_NAME_THE_DATA: Final = "put the data file there, or add the line `data file = NAME` to the header"
 
 log = logging.getLogger(__name__)
 
@@ -96,7 +98,7 @@ def open_envi(path: Path) -> EnviFile:
     """
     layout = read_envi_header(path)
     check_image_size(layout.lines, layout.samples, path)
-    file = EnviFile(layout, _data_path(path))
+    file = EnviFile(layout, _data_path(path, layout.data_file))
     size = file.path.stat().st_size
     line_bytes = layout.samples * layout.bands * file.dtype.itemsize
     if layout.lines == 0:
@@ -121,8 +123,17 @@ def _wrong_size(path: Path, found: str, expected: str) -> InputError:
     return InputError(str(path), found, expected, "restore the data file and its header")
 
 
-def _data_path(header: Path) -> Path:
-    """The data file beside a header: its name without an ending or with a usual one, else the only one so named."""
+def _data_path(header: Path, named: str | None) -> Path:
+    """The data file beside a header: that which its key `data file` names, else of its name.
+
+    Of its name without an ending or with a usual one, else the only one so named.
+    """
+    if named is not None:
+        given = header.parent / named
+        if not given.is_file():
+            told, remedy = f"no file {named}, which its key `data file` names", "put it there, or correct the key"
+            raise InputError(str(header), told, "the data beside the header", remedy)
+        return given
     stem = header.with_suffix("")
     beside = {path.name: path for path in header.parent.iterdir() if path.is_file() and path != header}
     by_lower_case = {name.lower(): path for name, path in sorted(beside.items(), reverse=True)}
@@ -135,7 +146,7 @@ def _data_path(header: Path) -> Path:
         return others[0]
     if others:
         found_names = f"{len(others)} files that may be its data: {', '.join(sorted(path.name for path in others)[:3])}"
-        raise InputError(str(header), found_names, f"one, or {stem.name}.raw", "remove the others, or rename the data")
+        raise InputError(str(header), found_names, f"one, or {stem.name}.raw", _NAME_THE_DATA)
     endings = ", ".join(f".{ending}" for ending in _ENDINGS[1:])
     expected = f"{stem.name}.{_ENDINGS[0]}, {endings}, or without an ending, beside it"
-    raise InputError(str(header), "no data file", expected, "put the data file there")
+    raise InputError(str(header), "no data file", expected, _NAME_THE_DATA)

@@ -9,13 +9,12 @@ import logging
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal, cast
+from typing import Final, cast
 
 from linepose.errors import InputError
+from linepose.inputs.scans.arcgis_header import arcgis_header, is_arcgis
+from linepose.inputs.scans.header_layout import LARGEST, EnviHeader, Interleave
 
-Interleave = Literal["bil", "bip", "bsq"]
-
-_LARGEST: Final = {"lines": 10_000_000, "samples": 100_000, "bands": 10_000}
 _LARGEST_HEADER_BYTES: Final = 50_000_000
 _LARGEST_OFFSET_BYTES: Final = 2**40
 _REAL_TYPES: Final = {1, 2, 3, 4, 5, 12, 13, 14, 15}  # ENVI's codes of numbers that are not complex
@@ -29,22 +28,6 @@ log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class EnviHeader:
-    """Layout of an ENVI data file; `lines` is 0 where the recording was broken off and the data's size says it.
-
-    `data_type` is ENVI's code, `byte_order` 0 (little-endian) or 1, `offset` in bytes.
-    """
-
-    lines: int
-    samples: int
-    bands: int
-    data_type: int
-    interleave: Interleave
-    byte_order: int
-    offset: int
-
-
-@dataclass(frozen=True)
 class _Entry:
     """Text of a value, and the line (counted from 1) on which its key stands."""
 
@@ -53,14 +36,20 @@ class _Entry:
 
 
 def read_envi_header(path: Path) -> EnviHeader:
-    """The layout that a header file describes; raises InputError naming the line and what is wrong with it."""
-    entries = _entries(_text(path), path)
+    """The layout that a header file describes; raises InputError naming the line and what is wrong with it.
+
+    A header without the word ENVI that says rows and columns as ArcGIS does is read as ArcGIS's.
+    """
+    text = _text(path)
+    if not _is_envi(text) and is_arcgis(text):
+        return arcgis_header(text, path)
+    entries = _entries(text, path)
     frames = [name for name in ("major frame offsets", "minor frame offsets") if name in entries]
     for name in frames:
         if re.search(r"[1-9]", entries[name].text):
             raise _fault(entries, name, path, "0, 0", "save the scan without frame offsets")
     _check_file_type(entries, path)
-    sizes = {key: _whole(entries, key, path, int(key != "lines"), most) for key, most in _LARGEST.items()}
+    sizes = {key: _whole(entries, key, path, int(key != "lines"), most) for key, most in LARGEST.items()}
     data_type = _whole(entries, "data type", path, 0, 255)
     if data_type not in _REAL_TYPES:
         expected = f"one of ENVI's types {', '.join(map(str, sorted(_REAL_TYPES)))}"
@@ -73,12 +62,43 @@ def read_envi_header(path: Path) -> EnviHeader:
         missing.remove("byte order")
     if missing:
         log.warning("%s: no %s: read as 0, as ENVI does", path, " and no ".join(missing))
-    return EnviHeader(**sizes, data_type=data_type, interleave=interleave, byte_order=byte_order, offset=offset)
+    data_file = _name_alone(entries["data file"].text) if "data file" in entries else None
+    return EnviHeader(
+        **sizes,
+        data_type=data_type,
+        interleave=interleave,
+        byte_order=byte_order,
+        offset=offset,
+        data_file=data_file,
+    )
 
 
 def header_words(path: Path) -> dict[str, str]:
     """Every value of a header as text, by its key in lower case."""
-    return {key: entry.text for key, entry in _entries(_text(path), path).items()}
+    text = _text(path)
+    if not _is_envi(text) and is_arcgis(text):
+        return {}
+    return {key: entry.text for key, entry in _entries(text, path).items()}
+
+
+def data_files(path: Path) -> list[str]:
+    """The name of the data file that a header says, in a list; none where it says none or is no header."""
+    if path.suffix.lower() != ".hdr":
+        return []
+    try:
+        name = header_words(path).get("data file")
+    except (InputError, OSError):
+        return []
+    return [] if name is None else [_name_alone(name)]
+
+
+def _name_alone(data_file: str) -> str:
+    """The name of a file without the folders of the machine on which it was recorded."""
+    return data_file.replace("\\", "/").rpartition("/")[2]
+
+
+def _is_envi(text: str) -> bool:
+    return bool(re.match(r"\s*ENVI\b", text, re.IGNORECASE))
 
 
 def _text(path: Path) -> str:
@@ -133,7 +153,7 @@ def _entries(text: str, path: Path) -> dict[str, _Entry]:
     return entries
 
 
-_USED: Final = {*_LARGEST, "data type", "interleave", "byte order", "header offset", "file type"}
+_USED: Final = {*LARGEST, "data type", "interleave", "byte order", "header offset", "file type", "data file"}
 
 
 def _check_file_type(entries: dict[str, _Entry], path: Path) -> None:
