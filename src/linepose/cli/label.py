@@ -1,4 +1,4 @@
-"""`linepose label NAME`: click the pattern's points in the scans."""
+"""`linepose label NAME`: click points in the scans."""
 
 import typer
 
@@ -6,7 +6,7 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 
 
 def label(name: Name, project: ProjectFolder = HERE) -> None:
-    """Open a window to click the pattern's points over each scan; what was clicked is kept when it is closed."""
+    """Open a window to click points over each scan; what was clicked is kept when it is closed."""
     from linepose.errors import InputError
     from linepose.inputs.source import ScansSection
     from linepose.pipeline.api import recorded_folder
@@ -20,5 +20,5 @@ def label(name: Name, project: ProjectFolder = HERE) -> None:
         raise InputError(f"{name}: source.kind", source.kind, "scans, which have images", remedy)
     from linepose.cli.labelling import label_platform
 
-    label_platform(recorded_folder(loaded, name, root), source)
+    label_platform(recorded_folder(loaded, name, root), source, target=loaded.platforms[name].target)
     typer.echo(f"next: linepose check {name}")

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+Name = int | str
 Names = NDArray[np.int64] | NDArray[np.str_]
 
 WHAT: Final = "a whole number from 0, or a name"

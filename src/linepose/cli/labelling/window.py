@@ -7,20 +7,24 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.backend_bases import Event, KeyEvent, MouseButton, MouseEvent
 from matplotlib.figure import Figure
+from matplotlib.widgets import TextBox
 
 from linepose.arrays import Floats
 from linepose.cli.labelling.session import Session
 from linepose.inputs.scans.scan_files import Intensity
 from linepose.inputs.targets.refine import Refine
-from linepose.survey.pattern import CORNER_MARK_CENTRE_M, N_POINTS, SHEET_M, board_points
+from linepose.survey.targets.registry import Target
+from linepose.survey.targets.rings import RingsSection
 
 _HELP: Final = (
     "left click: place    right click or u: undo    x: skip a hidden point    n, b: next scan, one back    "
     "click the board: that point\n"
+    "a: a new point, or write its name (where there is no pattern)\n"
     "d: snap to the dot on, off    mouse wheel or toolbar: zoom    r: whole scan    q: close; all is saved at once"
 )
 _CONTRAST_PERCENT: Final = (1.0, 99.5)
 _ZOOM: Final = 1.4
+_LISTED: Final = 24  # names below each other
 _PLACED, _NEXT = "#ffb000", "#dc267f"
 
 
@@ -39,12 +43,14 @@ class LabelWindow:
         read: Callable[[Path], Intensity],
         refine: Refine,
         save: Callable[[Session], None],
+        target: Target,
     ) -> None:
         self.figure, self.session, self.scans = figure, session, scans
         self._read, self._refine, self._save = read, refine, save
         self.snaps, self.message = True, ""
         grid = figure.add_gridspec(1, 2, width_ratios=(4, 1), left=0.06, right=0.98, top=0.92, bottom=0.14)
         self.axes, self._board = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
+        self._target, self._name = target, self._name_box() if session.takes_new else None
         figure.text(0.06, 0.02, _HELP, fontsize=9, color="0.35")
         figure.canvas.mpl_connect("button_press_event", self._pressed)
         figure.canvas.mpl_connect("key_press_event", self._typed)
@@ -70,9 +76,11 @@ class LabelWindow:
             "x": self._skip,
             "n": lambda: self._turn(1),
             "b": lambda: self._turn(-1),
+            "a": self._choose_new,
             "d": self._switch_snapping,
         }
-        if isinstance(event, KeyEvent) and event.key in actions:
+        writes = self._name is not None and self._name.capturekeystrokes
+        if isinstance(event, KeyEvent) and event.key in actions and not writes:
             actions[event.key]()
 
     def _scrolled(self, event: Event) -> None:
@@ -94,9 +102,26 @@ class LabelWindow:
 
     def _choose(self, event: MouseEvent) -> None:
         """Make the point of the sketch that was clicked the next one, to place it anew."""
-        apart = np.hypot(*(_sketch() - [event.xdata, event.ydata]).T)
-        self.session.point, self.message = int(apart.argmin()), ""
+        if self.session.names:
+            apart = np.hypot(*(self._sketch() - [event.xdata, event.ydata]).T)
+            self.session.point, self.message = int(apart.argmin()), ""
+            self._draw()
+
+    def _choose_new(self) -> None:
+        self.session.choose_new()
         self._draw()
+
+    def _name_box(self) -> TextBox:
+        """A line in which the next point's name is written, new or known."""
+        box = TextBox(self.figure.add_axes((0.85, 0.08, 0.13, 0.04)), "name ")
+        box.on_submit(self._named)
+        return box
+
+    def _named(self, text: str) -> None:
+        if text.strip() and self._name is not None:
+            self.message = "" if self.session.choose(text) else f"no name of a point: {text!r}"
+            self._name.set_val("")
+            self._draw()
 
     def _place(self, u_px: float, line: float) -> None:
         n_lines, n_pixels = self._intensity.shape
@@ -157,7 +182,7 @@ class LabelWindow:
         for mark in self._marks:
             mark.remove()
         self._marks = []
-        for point, (u_px, line) in sorted(self.session.here().items()):
+        for point, (u_px, line) in self.session.here().items():
             self._marks += self.axes.plot(u_px, line, "+", color=_PLACED, markersize=11, markeredgewidth=1.2)
             self._marks.append(
                 self.axes.annotate(
@@ -172,27 +197,35 @@ class LabelWindow:
         session = self.session
         place = f"scan {session.numbers.index(session.observation) + 1} of {len(session.numbers)}"
         name = self.scans[session.observation].name
-        task = f"click point {session.point}" if session.point < N_POINTS else "all points done: n for the next scan"
+        is_new = "new " if session.point == len(session.names) else ""
+        done = session.name is None
+        task = "all points done: n for the next scan" if done else f"click {is_new}point {session.name}"
         snapping = "" if self.snaps else "    (not snapping)"
         return f"{name}, {place}    {task}{snapping}" + (f"\n{self.message}" if self.message else "")
 
     def _draw_board(self) -> None:
-        """The board as seen from its front, so that the corner mark tells which way round the scan is."""
-        axes, here = self._board, self.session.here()
+        """The target as seen from its front, so that a corner mark tells which way round the scan is; or a list."""
+        axes, here, target, artwork = self._board, self.session.here(), self._target, self._target.artwork()
         axes.clear()
-        axes.plot(-CORNER_MARK_CENTRE_M[1], CORNER_MARK_CENTRE_M[0], "s", color="0.2", markersize=9)
-        for point, (x, y) in enumerate(_sketch()):
-            colour = _NEXT if point == self.session.point else _PLACED if point in here else "0.75"
+        if isinstance(target, RingsSection):
+            mark_x, mark_y = target.corner_mark_centre_m
+            axes.plot(-mark_y, mark_x, "s", color="0.2", markersize=9)
+        for point, (name, (x, y)) in enumerate(zip(self.session.names, self._sketch(), strict=True)):
+            colour = _NEXT if point == self.session.point else _PLACED if name in here else "0.75"
             axes.plot(x, y, "o", color=colour, markersize=15)
-            axes.annotate(str(point), (x, y), ha="center", va="center", fontsize=8)
-        axes.set_xlim(-SHEET_M[1] / 2, SHEET_M[1] / 2)
-        axes.set_ylim(SHEET_M[0] / 2, -SHEET_M[0] / 2)
-        axes.set_aspect("equal")
+            axes.annotate(str(name), (x, y), ha="center", va="center", fontsize=8)
+        half_x, half_y = (artwork.height_m / 2, artwork.width_m / 2) if artwork else (1.5, _LISTED / 2)
+        axes.set_xlim(-half_x, half_x)
+        axes.set_ylim(half_y, -half_y)
+        axes.set_aspect("equal" if artwork else "auto")
         axes.set_xticks([])
         axes.set_yticks([])
-        axes.set_title("board from its front\n(scans may mirror it)", fontsize=9)
+        axes.set_title("board from its front\n(scans may mirror it)" if artwork else "known points", fontsize=9)
 
-
-def _sketch() -> Floats:
-    """Places (15, 2) of the points in the sketch: the board turned upright, to fit beside the scan."""
-    return board_points()[:, [1, 0]] * [-1.0, 1.0]
+    def _sketch(self) -> Floats:
+        """Places of all names in the sketch: the target turned upright, to fit beside the scan; others listed."""
+        places = self._target.points()[:, [1, 0]] * [-1.0, 1.0]
+        listed = np.arange(len(self.session.names) - len(places))
+        columns = 1 + len(listed) // _LISTED
+        across = 3 * (listed // _LISTED + 0.5) / columns - 1.5
+        return np.concatenate([places, np.column_stack([across, listed % _LISTED + 0.5 - _LISTED / 2])])

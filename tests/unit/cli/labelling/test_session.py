@@ -6,7 +6,7 @@ from linepose.survey.pattern import N_POINTS
 
 @pytest.fixture
 def session():
-    return resumed([2, 5, 7], {})
+    return resumed([2, 5, 7], {}, range(N_POINTS))
 
 
 def test_points_are_placed_in_their_order(session):
@@ -63,12 +63,33 @@ def test_turning_stays_within_the_scans(session):
 
 def test_session_goes_on_where_it_was_left():
     labels = {(2, point): (1.0, 1.0) for point in range(N_POINTS)} | {(5, point): (1.0, 1.0) for point in range(4)}
-    session = resumed([2, 5, 7], labels)
+    session = resumed([2, 5, 7], labels, range(N_POINTS))
     assert (session.observation, session.point) == (5, 4)
     session.undo()  # nothing was done in this session: the last label of the earlier one
     assert session.point == 3
     assert (5, 3) not in session.labels
-    assert resumed([2], labels).point == N_POINTS
+    assert resumed([2], labels, range(N_POINTS)).point == N_POINTS
+
+
+def test_points_by_name_are_new_as_they_are_placed_and_known_afterwards(tmp_path):
+    session = resumed([2, 5], {}, (), takes_new=True)
+    session.place(1.0, 1.0)
+    assert session.choose("gate")
+    session.place(2.0, 2.0)
+    assert not session.choose("-1")
+    session.turn(1)
+    assert (session.names, session.name) == ([0, "gate"], 0)
+    session.skip()
+    session.place(3.0, 3.0)
+    session.choose_new()
+    session.place(4.0, 4.0)
+    assert session.labels == {(2, 0): (1, 1), (2, "gate"): (2, 2), (5, "gate"): (3, 3), (5, 1): (4, 4)}
+    session.undo()
+    assert (session.name, (5, 1) in session.labels) == (1, False)
+    save(session, tmp_path / "labels.csv")
+    assert (tmp_path / "labels.csv").read_text().split()[1:] == ["2,0,1,1", "2,gate,2,2", "5,gate,3,3"]
+    again = resumed([2, 5, 7], session.labels, (), takes_new=True)
+    assert (again.observation, again.names, again.name) == (7, [0, "gate"], 0)
 
 
 def test_labels_are_saved_in_order(session, tmp_path):

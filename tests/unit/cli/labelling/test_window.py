@@ -22,13 +22,16 @@ from linepose.inputs.scans.scan_files import read_intensity
 from linepose.inputs.source import ScansSection
 from linepose.inputs.targets.refine import METHODS
 from linepose.survey.pattern import N_POINTS
+from linepose.survey.targets.points import PointsSection
+from linepose.survey.targets.rings import RingsSection
 from unit.inputs.targets.conftest import draw
 
 
 class Mouse:
     """A window over two scans, and what a person does to it."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, target=None):
+        self.target = target or RingsSection()
         self.path, self.truth = folder / "labels.csv", {}
         self.scans = {1: folder / "run-01.png", 2: folder / "run-02.png"}
         for number, path in self.scans.items():
@@ -40,9 +43,15 @@ class Mouse:
     def open(self):
         self.figure = Figure(figsize=(13, 8.5))
         FigureCanvasAgg(self.figure)
-        session = session_of(self.scans, self.path)
+        session = session_of(self.scans, self.path, self.target)
         self.window = LabelWindow(
-            self.figure, session, self.scans, read_intensity, METHODS["centroid"], lambda one: save(one, self.path)
+            self.figure,
+            session,
+            self.scans,
+            read_intensity,
+            METHODS["centroid"],
+            lambda one: save(one, self.path),
+            self.target,
         )
         self.figure.canvas.draw()
 
@@ -179,6 +188,26 @@ def test_sketch_chooses_a_point_to_place_anew(mouse):
     mouse.click(30, 30)
     assert mouse.saved()[1, 0] == pytest.approx((30, 30), abs=2e-3)
     assert set(mouse.saved()) == {(1, 0), (1, 1)}
+
+
+def test_points_without_a_pattern_are_named_by_writing_or_numbered(tmp_path):
+    mouse = Mouse(tmp_path, PointsSection(names=("gate",)))
+    mouse.click(*mouse.truth[1][0])
+    mouse.click(*mouse.truth[1][1])
+    mouse.window._name.set_val("post 3")
+    assert "click point post 3" in mouse.window.axes.get_title(loc="left")
+    mouse.click(*mouse.truth[1][2])
+    mouse.press("n")
+    board = mouse.window._board
+    (place,) = [text.get_position() for text in board.texts if text.get_text() == "post 3"]
+    mouse.click(*place, axes=board)
+    mouse.click(*mouse.truth[2][2])
+    mouse.press("a")
+    assert "click new point 1" in mouse.window.axes.get_title(loc="left")
+    points = [line.split(",")[:2] for line in mouse.path.read_text().splitlines()[1:]]
+    assert points == [["1", "0"], ["1", "gate"], ["1", "post 3"], ["2", "post 3"]]
+    mouse.open()
+    assert mouse.window.session.names == ["gate", 0, "post 3"]
 
 
 def test_session_is_gone_on_with(mouse):
