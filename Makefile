@@ -7,7 +7,7 @@ STAMP := .venv/installed
 
 SHELL := bash
 
-.PHONY: help reproduce test check docs bench readme-bench reference images lock clean
+.PHONY: help reproduce test check types style docs bench readme-bench reference images lock clean
 
 help: ## What can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -24,10 +24,14 @@ reproduce: $(STAMP) ## Run every experiment; results go to results/
 test: $(STAMP) ## Run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest --numprocesses $(CORES) --dist loadgroup --no-loadscope-reorder
 
-check: $(STAMP) ## Style, types and the workflow's own lint
+check: style types ## Style, the workflow's own lint, and types
+
+types: $(STAMP) ## Types alone
+	$(BIN)/mypy
+
+style: $(STAMP) ## Style and the workflow's own lint alone
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/mypy
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakefmt --check Snakefile workflow
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 

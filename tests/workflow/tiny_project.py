@@ -33,7 +33,7 @@ TINY = {
         "basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]},
         "repeatability": None,
         "sensitivity": None,
-        "adjustment_beside": {"n_splits": 2},
+        "adjustment_beside": {"n_splits": 1},
     },
     "simulation": {
         "passes": PASSES,

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.stats import chi2, multivariate_t, norm, qmc
 
 from linepose.adjustment.reml import Restricted
 from linepose.arrays import Floats
@@ -32,6 +31,8 @@ class Proposal:
 
     def draw(self, count: int, seed: int) -> Floats:
         """Draws (count, F) from a scrambled Sobol sequence: evener than chance."""
+        from scipy.stats import chi2, norm, qmc  # slow to import
+
         n = len(self.centre)
         power = int(np.ceil(np.log2(max(count, 2))))
         uniform = qmc.Sobol(n + 1, rng=np.random.default_rng(seed)).random_base2(power)[:count]
@@ -42,6 +43,8 @@ class Proposal:
 
     def log_density(self, logs: Floats) -> Floats:
         """Logarithm of the density (D,) at logarithms of levels (D, F)."""
+        from scipy.stats import multivariate_t  # slow to import
+
         scaled = (logs - self.centre) @ np.linalg.inv(self.root)
         scale = np.where(scaled > 0, self.above, self.below)
         n = len(self.centre)

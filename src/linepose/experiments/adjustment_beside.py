@@ -12,6 +12,7 @@ from pydantic import Field, NonNegativeInt, PositiveInt
 
 from linepose.adjustment.levels import LEVEL_NAMES
 from linepose.adjustment.reprojection import reprojection
+from linepose.adjustment.result import Adjustment
 from linepose.estimation.adjustment_estimator import AdjustmentEstimator, adjustment_estimator
 from linepose.estimation.noise_models import ADJUSTMENT as ADJUSTMENT_MODEL
 from linepose.experiments.estimate import estimate_fields, estimate_row
@@ -65,15 +66,15 @@ SECTION: Final = Section(
 
 
 def adjustment_table(
-    sets: Mapping[str, AdjustmentEstimator], seed: int, true_pose: ArrayLike | None = None
+    sets: Mapping[str, AdjustmentEstimator], adjusted: Mapping[str, Adjustment], true_pose: ArrayLike | None = None
 ) -> pd.DataFrame:
     """One row a set of observations: pose, sigmas, levels, and the error where the true pose (6,) is known.
 
-    Columns as in `ADJUSTMENT`.
+    `adjusted` has what the adjustment of each set found; columns as in `ADJUSTMENT`.
     """
     rows = []
     for name, estimator in sets.items():
-        found = estimator.adjusted(seed=seed)
+        found = adjusted[name]
         weights = [found.view_weight, found.measurement_weight.ravel()]
         intervals = dict(zip(_INTERVALS, found.level_intervals.ravel(), strict=True))
         rows.append(
@@ -116,9 +117,10 @@ def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     surveys |= {name: other.all.survey for name, other in inputs.other_data.items()}
     sets = {name: adjustment_estimator(survey, conditions) for name, survey in surveys.items()}
     simulation = inputs.platform.simulation
-    table = adjustment_table(sets, seed, None if simulation is None else np.array(simulation.true_pose))
+    adjusted = {name: estimator.adjusted(seed=seed) for name, estimator in sets.items()}
+    table = adjustment_table(sets, adjusted, None if simulation is None else np.array(simulation.true_pose))
     log_rows(_logger, "%s: r_z %.3f m", table, ("set", "r_z_m"))
-    found = sets[ALL].adjusted(seed=seed)
+    found = adjusted[ALL]
     errors = reprojection(surveys[ALL], conditions.camera, found, sets[ALL].settings.line_period_s)
     ranges = batch_ranges(settings.n_splits, settings.batch_size)
     parts = {f"{name}-{part}": (name, ranges[part]) for name in sets for part in ranges}

@@ -31,17 +31,18 @@ def sets():
 
 
 def test_a_row_a_set_with_levels_and_the_error_against_the_truth(sets, tmp_path):
-    table = adjustment_table(sets, 3, POSE)
+    adjusted = {name: estimator.adjusted(seed=3) for name, estimator in sets.items()}
+    table = adjustment_table(sets, adjusted, POSE)
     write_table(table, tmp_path / "adjustment.parquet", ADJUSTMENT)
     table = read_table(tmp_path / "adjustment.parquet", ADJUSTMENT).set_index("set")
     assert table["n_observations"].to_dict() == {"all": 10, "inliers": 7}
-    found = sets["inliers"].adjusted(seed=3)
+    found = adjusted["inliers"]
     assert table.loc["inliers", "drift"] == found.levels.drift
     np.testing.assert_allclose(table.loc["inliers", ["white_low", "white_high"]].tolist(), found.level_intervals[1])
     error = np.linalg.norm(found.pose[:3] - POSE[:3])
     assert table.loc["inliers", "position_error_m"] == pytest.approx(error)
     assert table.loc["all", "position_error_m"] != pytest.approx(error)
-    assert np.isnan(adjustment_table({"all": sets["all"]}, 3).loc[0, "error_in_sigmas"])
+    assert np.isnan(adjustment_table({"all": sets["all"]}, adjusted).loc[0, "error_in_sigmas"])
 
 
 def test_halves_are_disjoint_and_depend_on_their_index_alone(sets, tmp_path):
