@@ -27,7 +27,7 @@ from linepose.survey.navigation import NavigationCovariances
 from linepose.survey.navigation_log import NavigationLog
 
 _FEWEST: Final = 2
-_POSES_AT_ONCE: Final = 100_000
+_POSES_AT_ONCE: Final = 50_000
 _EARLIEST_US, _LATEST_US = 315_964_800_000_000, 4_102_444_800_000_000  # 1980 to 2100
 
 log = logging.getLogger(__name__)
@@ -103,10 +103,7 @@ def geodetic_record(
         raise InputError(place, f"a place outside {frame.crs}", "one inside it", "correct source.navigation.crs")
     at_poses = _joined_covariances(covariances)
     if at_poses is not None:
-        row = nearest_rows(both.time_us, at_poses.time_us)
-        _, turn = local_from_geodetic(frame, both.position[row])
-        _, covariance = turned(at_poses.covariance, turn, both.euler_rad[row])
-        at_poses = NavigationCovariances(at_poses.time_us, covariance, at_poses.source)
+        at_poses = NavigationCovariances(at_poses.time_us, _turned(frame, both, at_poses), at_poses.source)
     log = _log(both, position, euler)
     return NavigationRecord(log, at_poses, frame.crs, frame.origin)
 
@@ -119,6 +116,17 @@ def _in_frame(frame: LocalFrame, poses: Poses) -> tuple[Floats, Floats]:
         position[part], turn = local_from_geodetic(frame, poses.position[part])
         euler[part] = turned_angles(turn, poses.euler_rad[part])
     return position, euler
+
+
+def _turned(frame: LocalFrame, poses: Poses, reported: NavigationCovariances) -> Floats:
+    """Covariances (C, 6, 6) in a frame, of those about true north at the nearest poses, part after part."""
+    covariance = np.empty_like(reported.covariance)
+    for first in range(0, len(covariance), _POSES_AT_ONCE):
+        part = slice(first, first + _POSES_AT_ONCE)
+        row = nearest_rows(poses.time_us, reported.time_us[part])
+        _, turn = local_from_geodetic(frame, poses.position[row])
+        _, covariance[part] = turned(reported.covariance[part], turn, poses.euler_rad[row])
+    return covariance
 
 
 def _log(poses: Poses, position: Floats, euler_rad: Floats) -> NavigationLog:
@@ -236,12 +244,17 @@ def _joined_covariances(parts: Sequence[Covariances]) -> NavigationCovariances |
     filled = sorted((part for part in parts if len(part.time_us)), key=lambda part: int(part.time_us[0]))
     if not filled:
         return None
-    time_us = np.concatenate([part.time_us for part in filled])
-    covariance = np.concatenate([part.covariance for part in filled])
-    order = np.argsort(time_us, kind="stable")
-    time_us, covariance = time_us[order], covariance[order]
+    first, *others = filled
+    time_us, covariance = first.time_us, first.covariance
+    if others:
+        time_us = np.concatenate([part.time_us for part in filled])
+        covariance = np.concatenate([part.covariance for part in filled])
+    if np.any(np.diff(time_us) < 0):  # copies of all matrices take much memory
+        order = np.argsort(time_us, kind="stable")
+        time_us, covariance = time_us[order], covariance[order]
     kept = _not_repeated(time_us, covariance)
-    time_us, covariance = time_us[kept], covariance[kept]
+    if not kept.all():
+        time_us, covariance = time_us[kept], covariance[kept]
     check_increasing(time_us, f"{filled[0].place}, covariances")
     lowest = np.min(np.diagonal(covariance, axis1=1, axis2=2), axis=1)
     for row in np.flatnonzero(~np.all(np.isfinite(covariance), axis=(1, 2)) | (lowest < 0))[:1]:
