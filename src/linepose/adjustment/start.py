@@ -1,4 +1,8 @@
-"""Where points are to begin with: nearest to their rays in the sense of least squares."""
+"""Where points are to begin with: where their rays meet the ground, or nearest to their rays by least squares.
+
+From the air rays are nearly parallel: at a pose that is a degree off they meet far above or below the ground, and the
+search ends there. The feet of rays on flat ground lead to the estimate from far off.
+"""
 
 from typing import Final
 
@@ -15,24 +19,54 @@ _DAMPING: Final = 1e-3  # of the rays' directions: rays that are nearly parallel
 _LEAST_DEPTH_M: Final = 0.1
 _NAMED: Final = 5  # observations in a message
 _FEW: Final = 0.34  # of the observations: these are wrong rather than the hand measurement
+_DOWNWARD: Final = 0.7  # of every line of sight's unit vector, from which on a survey is one from above
+_LEAST_DOWNWARD: Final = 0.1  # of a single ray, whose foot is else too far away
+_DEPTHS: Final = np.geomspace(0.3, 3000.0, 81)  # of the ground below the lowest camera (m), tried where none is known
 
 
 def start_points(measurements: Measurements, camera: Camera, pose: Floats) -> Floats:
-    """Points (K, 3) at a camera pose (6,).
-
-    Rays meet where they can; a point that would lie behind a camera that sees it is put on the mean of its rays, at the
-    median distance of those that met.
-    """
+    """Points (K, 3) at a camera pose (6,): feet of their rays where the camera looks down, else where rays meet."""
+    body_from_camera = rotations.matrix_from_rotation_vector(pose[3:])
     body = rotations.matrix_from_euler(measurements.body_pose[:, 3:])
     centre, direction = cameras.rays(
-        camera,
-        rotations.matrix_from_rotation_vector(pose[3:]),
-        pose[:3],
-        body,
-        measurements.body_pose[:, :3],
-        measurements.u_px,
+        camera, body_from_camera, pose[:3], body, measurements.body_pose[:, :3], measurements.u_px
     )
     direction = direction / np.linalg.norm(direction, axis=-1, keepdims=True)
+    if np.min(body[:, 2] @ body_from_camera[:, 2]) < _DOWNWARD:
+        return _met(measurements, centre, direction)
+    return _feet(measurements, centre, direction)
+
+
+def _feet(measurements: Measurements, centre: Floats, direction: Floats) -> Floats:
+    """Mean foot (K, 3) of each point's rays (L, 3) on flat ground, at the known heights or where feet lie closest."""
+    points, n = measurements.point, measurements.n_points
+    slope = direction / np.maximum(direction[:, 2:], _LEAST_DOWNWARD)
+    count = np.bincount(points, minlength=n)
+
+    def feet_at(down_m: float) -> tuple[Floats, float]:
+        """Mean feet, and the mean square of what rays lie off them in units of the depth."""
+        depth = down_m - centre[:, 2:]
+        foot = centre + depth * slope
+        mean = np.column_stack([np.bincount(points, foot[:, i], n) / count for i in range(3)])
+        return mean, float(np.mean(((foot - mean[points]) / depth) ** 2))
+
+    known = measurements.known.information[:, 2, 2] > 0
+    lowest = float(centre[:, 2].max())
+    if np.any(known):
+        down_m = float(np.median(measurements.known.position_m[known, 2]))
+        start = feet_at(max(down_m, lowest + float(_DEPTHS[0])))[0]
+    else:
+        start = min((feet_at(lowest + depth) for depth in _DEPTHS), key=lambda one: one[1])[0]
+    start[:, 2] = np.where(known, measurements.known.position_m[:, 2], start[:, 2])
+    return start
+
+
+def _met(measurements: Measurements, centre: Floats, direction: Floats) -> Floats:
+    """Where rays (L, 3) of each point meet (K, 3).
+
+    A point that would lie behind a camera that sees it is put on the mean of its rays, at the median distance of those
+    that met.
+    """
     points, n = measurements.point, measurements.n_points
     across = (1 + _DAMPING) * np.eye(3) - direction[:, :, None] * direction[:, None, :]
     normal, vector, count = np.zeros((n, 3, 3)), np.zeros((n, 3)), np.zeros(n)
