@@ -61,7 +61,7 @@ def speed() -> None:
     else:
         survey, camera, pose = timed_survey.make_survey(16, 15), timed_survey.CAMERA, timed_survey.POSE
     measurements, knowledge = measurements_from_survey(survey, camera), Knowledge(camera, None)
-    state = state_at(pose, camera, start_points(measurements, camera, pose), len(measurements.u_px))
+    state = state_at(pose, camera, start_points(measurements, camera, pose), measurements)
     weights, structure = unit_weights(measurements), measurements.structure
     model = model_at(measurements, knowledge, state)
     if model is None:

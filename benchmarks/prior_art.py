@@ -32,7 +32,7 @@ def prior_art(n_views: int = 16, n_points: int = 15) -> None:
     camera, pose = timed_survey.CAMERA, timed_survey.POSE + HAND_ERROR
     survey = timed_survey.make_survey(n_views, n_points, seed=1)
     m = measurements_from_survey(survey, camera, line_period_s=timed_survey.LINE_S)
-    start = state_at(pose, camera, start_points(m, camera, pose), len(m.u_px))
+    start = state_at(pose, camera, start_points(m, camera, pose), m)
     knowledge = Knowledge(camera, hand_measured(pose, default_hand_covariance()))
     problem = PlainProblem(m, knowledge, LEVELS, start)
 

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linepose.adjustment.assemble import Fit, assembled
-from linepose.adjustment.curvature import Curvature, curvature
-from linepose.adjustment.estimate import Estimate, unit_weights
+from linepose.adjustment.all_at_once import AllAtOnce, Fit, adjust_all
+from linepose.adjustment.assemble import assembled
+from linepose.adjustment.contradictions import KnownPointsFit
+from linepose.adjustment.estimate import unit_weights
 from linepose.adjustment.hand_measured import HandMeasuredPrior, hand_measured, ran_off
-from linepose.adjustment.heavy_tailed import with_tails
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.levels import log_from_levels
 from linepose.adjustment.many_points import (
     MANY_POINTS,
@@ -19,10 +20,8 @@ from linepose.adjustment.many_points import (
     some_points,
     spread_of_many,
 )
-from linepose.adjustment.measurements import KnownPoints, Measurements, measurements_from_survey
-from linepose.adjustment.normal import point_covariances, trailing_inverse
-from linepose.adjustment.posterior import Mixture, mixture
-from linepose.adjustment.residuals import normalised_residuals
+from linepose.adjustment.measurements import Measurements, measurements_from_survey
+from linepose.adjustment.normal import COMMON_SHIFT, trailing_inverse
 from linepose.adjustment.result import Adjustment
 from linepose.adjustment.settings import AdjustmentSettings, default_hand_covariance
 from linepose.adjustment.start import start_points
@@ -60,17 +59,37 @@ def adjust(
         pose, np.asarray(default_hand_covariance() if hand_covariance is None else hand_covariance, dtype=float)
     )
     measurements = measurements_from_survey(survey, camera, known_points, settings.line_period_s)
-    if measurements.n_views < 2:
+    if measurements.n_views < 2 and not np.any(measurements.known.any):
         raise InputError("observations", "one observation", "two or more", "add observations of the same pattern")
     knowledge = Knowledge(camera, hand if settings.hand_measured_prior else None, settings.clock_offset_sigma_s)
     if measurements.n_points <= MANY_POINTS:
         return assembled(
-            survey, measurements, knowledge, *_of_all(measurements, knowledge, start, hand, settings), settings
+            survey, measurements, knowledge, adjust_all(measurements, knowledge, start, hand, settings), settings
         )
-    few = measurements_from_survey(some_points(survey, settings.seed), camera, known_points, settings.line_period_s)
-    fit, found, curved, spread = _of_all(few, knowledge, start, hand, settings)
+    always = None if known_points is None else known_points.apart
+    few = measurements_from_survey(
+        some_points(survey, settings.seed, always), camera, known_points, settings.line_period_s
+    )
+    return _of_many(survey, measurements, few, knowledge, start, hand, settings)
+
+
+def _of_many(
+    survey: Survey,
+    measurements: Measurements,
+    few: Measurements,
+    knowledge: Knowledge,
+    start: Floats,
+    hand: HandMeasuredPrior,
+    settings: AdjustmentSettings,
+) -> Adjustment:
+    """Levels, curvature and weights of known points from few points, the pose from all."""
+    told = adjust_all(few, knowledge, start, hand, settings)
+    known = _known_of_all(measurements, few, told.known)
+    measurements = replace(measurements, known=measurements.known.weighted(known.counted))
+    fit, found = told.fit, told.found
+    points = start_points(measurements, knowledge.camera, fit.state.pose)
     nearby = replace(
-        state_at(fit.state.pose, camera, start_points(measurements, camera, fit.state.pose), len(measurements.u_px)),
+        state_at(fit.state.pose, knowledge.camera, points, measurements),
         principal_point_px=fit.state.principal_point_px,
         focal_length_m=fit.state.focal_length_m,
         clock_offset_s=fit.state.clock_offset_s,
@@ -86,55 +105,33 @@ def adjust(
     n = knowledge.n_sought
     mode = log_from_levels(found.levels)
     spread = spread_of_many(
-        spread,
+        told.spread,
         trailing_inverse(found.solution.done.upper, n),
         many.camera_covariance[-n:, -n:],
         mode,
-        slopes_by_levels(measurements, knowledge, many, spread, mode),
+        slopes_by_levels(measurements, knowledge, many, told.spread, mode),
     )
-    normalised = normalised_of_many(many, measurements.n_points)
     fit = Fit(
         many.state,
         many.z,
         many.q,
         many.weights,
-        normalised,
+        normalised_of_many(many, measurements.n_points),
         many.chi_squared,
         many.converged and found.converged and not ran_off(hand, many.state.position_m),
         np.full((measurements.n_points, 3, 3), np.nan),
+        float(np.sqrt(many.camera_covariance[COMMON_SHIFT, COMMON_SHIFT])),
     )
-    return assembled(survey, measurements, knowledge, fit, found, curved, spread, settings)
+    all_at_once = AllAtOnce(fit, found, told.curved, spread, known)
+    return assembled(survey, measurements, knowledge, all_at_once, settings)
 
 
-def _of_all(
-    measurements: Measurements,
-    knowledge: Knowledge,
-    start: Floats,
-    hand: HandMeasuredPrior,
-    settings: AdjustmentSettings,
-) -> tuple[Fit, Estimate, Curvature, Mixture]:
-    """All measurements at once, where their normal equations are small."""
-    found = with_tails(
-        measurements,
-        knowledge,
-        replace(knowledge, hand=hand),
-        state_at(start, knowledge.camera, start_points(measurements, knowledge.camera, start), len(measurements.u_px)),
-        settings,
-    )
-    curved = curvature(measurements, knowledge, found.solution, found.levels, found.weights)
-    spread = mixture(found.restricted, found.log_levels, curved.stretch, settings.n_draws, settings.seed)
-    solution = found.solution
-    fit = Fit(
-        solution.state,
-        solution.z,
-        solution.q,
-        found.weights,
-        normalised_residuals(solution.done),
-        solution.done.chi_squared,
-        found.converged and not ran_off(hand, solution.state.position_m),
-        point_covariances(solution.done.upper, measurements.n_points),
-    )
-    return fit, found, curved, spread
+def _known_of_all(measurements: Measurements, few: Measurements, fitted: KnownPointsFit) -> KnownPointsFit:
+    """How known points fit, from that of few points among them."""
+    weight, sigmas = np.full((2, measurements.n_points), np.nan)
+    rows = np.searchsorted(measurements.points, few.points)
+    weight[rows], sigmas[rows] = fitted.weight, fitted.sigmas
+    return KnownPointsFit(weight, sigmas)
 
 
 def _check_camera(camera: Camera) -> None:

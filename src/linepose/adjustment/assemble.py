@@ -1,20 +1,26 @@
 """The result of an adjustment, put together on the survey's grid."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 import pandas as pd
 
-from linepose.adjustment.curvature import Curvature
+from linepose.adjustment.all_at_once import AllAtOnce
 from linepose.adjustment.estimate import Estimate
 from linepose.adjustment.hand_measured import HandMeasuredPrior
 from linepose.adjustment.levels import N_LEVELS
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_POSE
 from linepose.adjustment.posterior import Mixture
-from linepose.adjustment.process import Weights
-from linepose.adjustment.result import Adjustment, Diagnostics, Quality, gridded, warnings_of, weighted_quantiles
+from linepose.adjustment.result import (
+    Adjustment,
+    Contradiction,
+    Diagnostics,
+    Quality,
+    gridded,
+    warnings_of,
+    weighted_quantiles,
+)
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.state import Knowledge, State
 from linepose.arrays import Floats
@@ -27,35 +33,15 @@ _OPEN_SHARE: Final = 0.9  # of a prior's sigma, above which the data have said n
 _INTERVAL: Final = (0.025, 0.975)
 
 
-@dataclass(frozen=True)
-class Fit:
-    """The minimum of chi squared over all measurements.
-
-    z (L, 6), q (N, 6): the process; weights: of the tails; normalised (L, 2): residuals; chi_squared; converged;
-    point_covariance (K, 3, 3): NaN where it is not known.
-    """
-
-    state: State
-    z: Floats
-    q: Floats
-    weights: Weights
-    normalised: Floats
-    chi_squared: float
-    converged: bool
-    point_covariance: Floats
-
-
 def assembled(
     survey: Survey,
     measurements: Measurements,
     knowledge: Knowledge,
-    fit: Fit,
-    found: Estimate,
-    curved: Curvature,
-    spread: Mixture,
+    done: AllAtOnce,
     settings: AdjustmentSettings,
 ) -> Adjustment:
     """The result on the survey's grid, from the fit of all measurements and what tells its levels and its spread."""
+    fit, found, spread = done.fit, done.found, done.spread
     state, weights = fit.state, fit.weights
     _, sought_covariance = spread.moments()
     step_covariance = sought_covariance[-N_POSE:, -N_POSE:]
@@ -69,6 +55,9 @@ def assembled(
     points[measurements.points] = state.points_m
     point_covariance = np.full((survey.n_points, 3, 3), np.nan)
     point_covariance[measurements.points] = fit.point_covariance
+    known = np.full((2, survey.n_points), np.nan)
+    known[:, measurements.points] = done.known.weight, done.known.sigmas
+    shifted = bool(np.any(state.shifts))
     view_rows = np.empty(measurements.n_views, dtype=np.int64)
     view_rows[measurements.view] = measurements.row
     constants, view_weight = np.full((survey.n_observations, N_POSE), np.nan), np.full(survey.n_observations, np.nan)
@@ -89,7 +78,11 @@ def assembled(
         measurement_weight=gridded(weights.of_measurement, *grid),
         normalised=gridded(fit.normalised, *grid),
         samples=_samples(state, spread, settings),
-        diagnostics=_diagnostics(measurements, knowledge, fit, found, curved, spread, step_covariance, clock_sigma_s),
+        diagnostics=_diagnostics(measurements, knowledge, done, step_covariance, clock_sigma_s),
+        known_weight=known[0],
+        known_sigmas=known[1],
+        common_shift_m=state.common_shift_m if shifted else np.nan,
+        common_shift_sigma_m=fit.common_shift_sigma_m if shifted else np.nan,
         clock_offset_s=clock_offset_s,
         clock_offset_sigma_s=clock_sigma_s,
     )
@@ -127,13 +120,11 @@ def _intervals(found: Estimate, spread: Mixture) -> Floats:
 def _diagnostics(
     measurements: Measurements,
     knowledge: Knowledge,
-    fit: Fit,
-    found: Estimate,
-    curved: Curvature,
-    spread: Mixture,
+    done: AllAtOnce,
     covariance: Floats,
     clock_sigma_s: float,
 ) -> Diagnostics:
+    fit, found, curved, spread = done.fit, done.found, done.curved, done.spread
     disagreement = np.full(N_POSE, np.nan)
     open_directions: tuple[str, ...] = ()
     if knowledge.hand is not None:
@@ -146,6 +137,10 @@ def _diagnostics(
         disagreement_sigmas=disagreement,
         open_directions=open_directions,
         drift_known=measurements.timed,
+        contradictions=tuple(
+            Contradiction(int(measurements.points[row]), float(done.known.sigmas[row]), float(done.known.weight[row]))
+            for row in done.known.contradicting
+        ),
         clock_known=not clock_sigma_s > _OPEN_SHARE * (knowledge.clock_offset_sigma_s or np.inf),
     )
     return Diagnostics(
@@ -162,7 +157,7 @@ def _diagnostics(
 def _degrees_of_freedom(measurements: Measurements, knowledge: Knowledge) -> int:
     """Equations less unknowns; a parameter of which something is known beforehand has an equation of its own."""
     unknown = 3 * measurements.n_points + (0 if knowledge.hand is not None else N_POSE)
-    known = int(np.linalg.matrix_rank(measurements.known.information).sum())
+    known = int(np.linalg.matrix_rank(measurements.known.information).sum() + measurements.known.on_surface.sum())
     return 2 * len(measurements.u_px) - unknown + known
 
 

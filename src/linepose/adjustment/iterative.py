@@ -28,8 +28,8 @@ _LEAST_EIGENVALUE: Final = 1e-12  # of their normal equations with unit diagonal
 class Equations:
     """Normal equations of L measurements of K points, as what they do to a column.
 
-    by_point (L, 2, 3) and camera (L, 2, 9): derivatives by point, and by principal point, focal length, clock offset
-    and pose; point (L,); factor: of the error process.
+    by_point (L, 2, 3) and camera (L, 2, 10): derivatives by point, and by principal point, focal length, common
+    shift, clock offset and pose; point (L,); factor: of the error process.
     """
 
     by_point: Floats
@@ -44,22 +44,22 @@ class Equations:
         return len(self.prior.points)
 
     def times_design(self, column: Floats) -> Floats:
-        """A times a column (3 K + 9,), rows u and v of each measurement; (L, 2)."""
+        """A times a column (3 K + 10,), rows u and v of each measurement; (L, 2)."""
         return _times_design(self.by_point, self.camera, self.point, column)
 
     def transposed_information(self, residual: Floats) -> Floats:
-        """`A^T C^-1` times residuals (L, 2); (3 K + 9,)."""
+        """`A^T C^-1` times residuals (L, 2); (3 K + 10,)."""
         weighted = unwhiten(self.factor, whiten_residual(self.factor, residual))
         return _times_transposed(self.by_point, self.camera, self.point, self.n_points, weighted)
 
     def times_normal(self, column: Floats) -> Floats:
-        """N times a column (3 K + 9,)."""
+        """N times a column (3 K + 10,)."""
         points = np.einsum("kij,kj->ki", self.prior.points, column[:-N_CAMERA].reshape(-1, 3)).ravel()
         prior = np.concatenate([points, self.prior.camera @ column[-N_CAMERA:]])
         return self.transposed_information(self.times_design(column)) + prior
 
     def right_side(self, residual: Floats) -> Floats:
-        """`A^T C^-1 e + prior` of residuals (L, 2); (3 K + 9,)."""
+        """`A^T C^-1 e + prior` of residuals (L, 2); (3 K + 10,)."""
         prior = np.concatenate([self.prior.points_vector.ravel(), self.prior.camera_vector])
         return self.transposed_information(residual) + prior
 
@@ -76,7 +76,7 @@ def equations(linearised: Linearised, point: np.ndarray, factor: Factor, prior: 
 class Blocks:
     """Normal equations with independent measurements, factored.
 
-    points (K, 3, 3): inverted; coupling (3 K, 9): of points and camera; camera (9, 9): its reduced matrix, inverted.
+    points (K, 3, 3): inverted; coupling (3 K, 10): of points and camera; camera (10, 10): its reduced matrix, inverted.
     """
 
     points: Floats
@@ -84,7 +84,7 @@ class Blocks:
     camera: Floats
 
     def solve(self, column: Floats) -> Floats:
-        """The inverse times a column (3 K + 9,)."""
+        """The inverse times a column (3 K + 10,)."""
         first = self._points(column[:-N_CAMERA])
         camera = self.camera @ (column[-N_CAMERA:] - first @ self.coupling)
         return np.concatenate([first - self._points(self.coupling @ camera), camera])
@@ -95,13 +95,13 @@ class Blocks:
 
 @dataclass(frozen=True)
 class Smooth:
-    """S smooth columns (3 K + 9, S) and the inverse (S, S) of their normal equations."""
+    """S smooth columns (3 K + 10, S) and the inverse (S, S) of their normal equations."""
 
     columns: Floats
     inverse: Floats
 
     def solve(self, column: Floats) -> Floats:
-        """The inverse, of what the smooth columns span, times a column (3 K + 9,)."""
+        """The inverse, of what the smooth columns span, times a column (3 K + 10,)."""
         return self.columns @ (self.inverse @ (column @ self.columns))
 
 
@@ -113,7 +113,7 @@ class Preconditioner:
     smooth: Smooth
 
     def solve(self, column: Floats) -> Floats:
-        """An approximation of the inverse of the normal equations times a column (3 K + 9,)."""
+        """An approximation of the inverse of the normal equations times a column (3 K + 10,)."""
         return self.blocks.solve(column) + self.smooth.solve(column)
 
 
@@ -149,7 +149,7 @@ def smooth(system: Equations, points_m: Floats) -> Smooth:
 
 
 def smooth_columns(points_m: Floats) -> Floats:
-    """Columns (3 K + 9, S): polynomial displacements of points (K, 3), and each of the camera's columns alone."""
+    """Columns (3 K + 10, S): polynomial displacements of points (K, 3), and each of the camera's columns alone."""
     off = points_m - points_m.mean(axis=0)
     along = off @ np.linalg.svd(off, full_matrices=False)[2][:2].T
     scaled = along / np.maximum(np.abs(along).max(axis=0), 1e-300)
@@ -166,7 +166,7 @@ def smooth_columns(points_m: Floats) -> Floats:
 def conjugate_gradients(
     system: Equations, inverse: Preconditioner, right: Floats, tolerance: float
 ) -> tuple[Floats, int]:
-    """N^-1 times a column (3 K + 9,), and the number of iterations.
+    """N^-1 times a column (3 K + 10,), and the number of iterations.
 
     It ends when the preconditioned residual is `tolerance` of the right side's. Raises EstimationError where that takes
     too long.

@@ -12,8 +12,8 @@ of a measurement is
     e = y - h + J c0 = J_theta d_theta + J_P dP + J c + n
 
 at the present correction c0, so that the corrections themselves, not steps of them, are what the error process knows.
-theta: lever arm r (3, m), small rotation on the left of R_bc (3, rad), principal point u0 (px), focal length (m), clock
-offset (s).
+theta: lever arm r (3, m), small rotation on the left of R_bc (3, rad), principal point u0 (px), focal length (m), shift
+downwards of all points whose height is from one source (m), clock offset (s).
 """
 
 from typing import Final, NamedTuple
@@ -23,7 +23,7 @@ import numpy as np
 from linepose.arrays import Floats
 from linepose.compiling.kernels import kernel
 
-N_THETA: Final = 9
+N_THETA: Final = 10
 
 
 class Optics(NamedTuple):
@@ -41,7 +41,7 @@ class Optics(NamedTuple):
 class Linearised(NamedTuple):
     """L measurements, rows u and v in pixels.
 
-    residual_px (L, 2): y - h; by_theta (L, 2, 9); by_point (L, 2, 3); by_body (L, 2, 6).
+    residual_px (L, 2): y - h; by_theta (L, 2, 10); by_point (L, 2, 3); by_body (L, 2, 6).
     """
 
     residual_px: Floats
@@ -67,12 +67,14 @@ def linearise(
     rate: Floats,
     point_of: np.ndarray,
     points_m: Floats,
+    shifts: Floats,
     optics: Optics,
     out: Linearised,
 ) -> int:
     """Fill `out` at body poses (L, 6), corrected, and points (K, 3) of which measurement l sees `point_of[l]`.
 
-    rate (L, 6): of the body (m/s, rad/s), along which a clock offset moves it; zero where none is estimated.
+    rate (L, 6): of the body (m/s, rad/s), along which a clock offset moves it; zero where none is estimated. shifts
+    (K,): share of the common shift that a point follows, one or none.
 
     Returns the number of measurements whose point is not in front of the camera; `out` is of use only if it is none.
     """
@@ -137,5 +139,6 @@ def linearise(
             moved = 0.0
             for i in range(6):
                 moved += body[i] * rate[line, i]
-            theta[8] = moved
+            theta[8] = h2 * shifts[point_of[line]]
+            theta[9] = moved
     return behind

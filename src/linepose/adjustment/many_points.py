@@ -45,8 +45,8 @@ _WEIGHT_SUM: Final = DEGREES_OF_FREEDOM + MEASUREMENT_DIMENSION
 class ManySolution:
     """A minimum of chi squared over all measurements.
 
-    camera_covariance (9, 9): of principal point, focal length, clock offset and pose; whitened (L, 2): residuals; z (L,
-    6), q (N, 6): the process; weights: of the tails; chi_squared; n_steps; converged.
+    camera_covariance (10, 10): of principal point, focal length, common shift, clock offset and pose; whitened (L, 2):
+    residuals; z (L, 6), q (N, 6): the process; weights: of the tails; chi_squared; n_steps; converged.
     """
 
     state: State
@@ -60,14 +60,20 @@ class ManySolution:
     converged: bool
 
 
-def some_points(survey: Survey, seed: int) -> Survey:
-    """The survey of as many points as determinants are formed for, drawn from those that most views have."""
+def some_points(survey: Survey, seed: int, always: np.ndarray | None = None) -> Survey:
+    """The survey of as many points as determinants are formed for, drawn from those that most views have.
+
+    always (M,): points that are taken beside these, of which something is known, but no more than as many again.
+    """
     count = np.isfinite(survey.u_px).sum(axis=0)
     often = np.flatnonzero(count >= max(np.median(count[count > 0]), 2))
     random = np.random.default_rng([seed, 2])
     chosen = random.choice(often, size=min(FEW_POINTS, len(often)), replace=False)
     left = np.ones(survey.n_points, dtype=bool)
     left[chosen] = False
+    if always is not None:
+        seen = np.flatnonzero(always & left & (count > 0))
+        left[random.permutation(seen)[: MANY_POINTS - FEW_POINTS]] = False
     u_px = survey.u_px.copy()
     u_px[:, left] = np.nan
     return replace(survey, u_px=u_px)
@@ -99,6 +105,7 @@ def solve_many(
             knowledge.rates(measurements),
             measurements.point,
             state.points_m,
+            measurements.known.shifts,
             state.optics(knowledge.camera),
             linearised,
         ):
@@ -131,7 +138,7 @@ def solve_many(
 
 
 def _camera_covariance(system: Equations, inverse: Preconditioner) -> Floats:
-    """Covariance (9, 9) of the camera's columns."""
+    """Covariance (10, 10) of the camera's columns."""
     covariance = np.empty((N_CAMERA, N_CAMERA))
     for i in range(N_CAMERA):
         unit = np.zeros(3 * system.n_points + N_CAMERA)

@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from linepose.adjustment.known_points import KnownPoints, nothing_known
 from linepose.adjustment.motion import body_rates, lateness_of_views
 from linepose.adjustment.process import ErrorStructure
 from linepose.arrays import Floats
@@ -15,17 +16,6 @@ from linepose.survey.observations import Survey
 
 NEGATIVE_EIGENVALUE: Final = 1e-9  # of the largest: rounding in a file, not an invalid covariance
 _RAYS: Final = 2  # that a point needs, of which nothing else is known
-
-
-@dataclass(frozen=True)
-class KnownPoints:
-    """What is known of points before any measurement: position_m (M, 3) and its information (M, 3, 3), zero for none.
-
-    A height that is known to s is `diag(0, 0, 1/s^2)`; a control point `I/s^2`.
-    """
-
-    position_m: Floats
-    information: Floats
 
 
 @dataclass(frozen=True)
@@ -70,9 +60,9 @@ def measurements_from_survey(
     A point on a single ray can follow any pose without error: it says nothing, and is left out. Raises InputError where
     no point is left, a body pose or covariance is of no use, or the times of two views overlap.
     """
-    known = known or KnownPoints(np.zeros((survey.n_points, 3)), np.zeros((survey.n_points, 3, 3)))
+    known = known or nothing_known(survey.n_points)
     seen = np.isfinite(survey.u_px)
-    usable = (seen.sum(axis=0) >= _RAYS) | (seen.any(axis=0) & np.any(known.information != 0, axis=(1, 2)))
+    usable = (seen.sum(axis=0) >= _RAYS) | (seen.any(axis=0) & known.any)
     row, column = np.nonzero(seen & usable)
     if len(row) == 0:
         raise InputError(
@@ -115,7 +105,7 @@ def measurements_from_survey(
         rate=np.nan_to_num(rate, nan=0.0),
         structure=structure,
         timed=timed,
-        known=KnownPoints(known.position_m[points], known.information[points]),
+        known=known.select(points),
     )
 
 

@@ -1,9 +1,11 @@
 """Normal equations of the whitened linear model: points, intrinsics, clock offset and pose in one triangular factor.
 
-Columns are ordered: points (3 K), principal point, focal length, clock offset, pose (6), and the residual last. The
+Columns are ordered: points (3 K), principal point, focal length, common shift, clock offset, pose (6), and the residual
+last. The
 Cholesky factor of their products holds all that the adjustment asks for: the residual's last pivot is the least chi
 squared, the other pivots are the determinant, and the trailing blocks are marginal: of the pose, of pose and clock
-offset, and of all that is not a point. Without an estimate of the clock offset its column is zero and its prior one.
+offset, and of all that is not a point. Without an estimate of shift or clock offset the column is zero and its prior
+one.
 """
 
 from typing import Final, NamedTuple
@@ -18,7 +20,9 @@ from linepose.arrays import Floats
 from linepose.compiling.kernels import kernel
 
 N_INTRINSICS: Final = 2
-N_SHARED: Final = N_INTRINSICS + 1  # with the clock offset
+COMMON_SHIFT: Final = N_INTRINSICS  # its column among those of the camera
+CLOCK_OFFSET: Final = COMMON_SHIFT + 1
+N_SHARED: Final = CLOCK_OFFSET + 1
 N_POSE: Final = 6
 N_CAMERA: Final = N_SHARED + N_POSE
 _WIDTH: Final = 4  # columns are padded to a multiple of it
@@ -27,9 +31,9 @@ _WIDTH: Final = 4  # columns are padded to a multiple of it
 class Prior(NamedTuple):
     """What is known beside the measurements, as quadratic forms about the present estimate.
 
-    camera (9, 9), camera_vector (9,): information of principal point, focal length, clock offset and pose, and its
-    product with what the step ought to be; points (K, 3, 3), points_vector (K, 3): the same of points; chi_squared:
-    with no step.
+    camera (10, 10), camera_vector (10,): information of principal point, focal length, common shift, clock offset and
+    pose, and its product with what the step ought to be; points (K, 3, 3), points_vector (K, 3): the same of points;
+    chi_squared: with no step.
     """
 
     camera: Floats
@@ -68,7 +72,8 @@ def design(linearised: Linearised, correction: Floats, point_of: np.ndarray, n_p
             start = 3 * point_of[line]
             for i in range(3):
                 out[start + i] = linearised.by_point[line, row, i]
-            out[first], out[first + 1], out[first + 2] = theta[6], theta[7], theta[8]
+            for i in range(N_SHARED):
+                out[first + i] = theta[N_POSE + i]
             residual = linearised.residual_px[line, row]
             for i in range(6):
                 out[first + N_SHARED + i] = theta[i]
@@ -202,11 +207,15 @@ def trailing_inverse(upper: Floats, size: int) -> Floats:
     return inverse @ inverse.T
 
 
-def point_covariances(upper: Floats, n_points: int) -> Floats:
-    """Covariances (K, 3, 3) of the points, which come first in a factor (n, n) with its residual column."""
-    n = upper.shape[0] - 1
+def point_covariances(upper: Floats, shifts: Floats) -> Floats:
+    """Covariances (K, 3, 3) of the points, which come first in a factor (n, n) with its residual column.
+
+    shifts (K,): which of them follow the common shift downwards.
+    """
+    n, n_points = upper.shape[0] - 1, len(shifts)
     inverse = solve_triangular(np.triu(upper[:n, :n]), np.eye(n))
-    rows = inverse[: 3 * n_points].reshape(n_points, 3, n)
+    rows = inverse[: 3 * n_points].reshape(n_points, 3, n).copy()
+    rows[:, 2] += shifts[:, None] * inverse[3 * n_points + COMMON_SHIFT]
     return np.asarray(rows @ np.swapaxes(rows, 1, 2))
 
 

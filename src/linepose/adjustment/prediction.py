@@ -31,7 +31,7 @@ def predicted_covariance(
     """
     measurements = measurements_from_survey(survey, camera)
     hand = None if hand_covariance is None else hand_measured(pose, hand_covariance)
-    state = state_at(pose, camera, np.ascontiguousarray(points_m[measurements.points]), len(measurements.u_px))
+    state = state_at(pose, camera, np.ascontiguousarray(points_m[measurements.points]), measurements)
     model = model_at(measurements, Knowledge(camera, hand), state)
     if model is None:
         raise EstimationError("predicted sigmas: a point lies behind the camera; correct the hand-measured pose")

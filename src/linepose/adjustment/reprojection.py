@@ -33,7 +33,16 @@ def reprojection(survey: Survey, camera: Camera, found: Adjustment, line_period_
     points = np.ascontiguousarray(found.points_m[measurements.points])
     moved = 0.0 if np.isnan(found.clock_offset_s) else found.clock_offset_s
     bodies = measurements.body_pose + moved * measurements.rate
-    linearise(measurements.u_px, bodies, np.zeros_like(bodies), measurements.point, points, optics, out)
+    linearise(
+        measurements.u_px,
+        bodies,
+        np.zeros_like(bodies),
+        measurements.point,
+        points,
+        measurements.known.shifts,
+        optics,
+        out,
+    )
     image = error_image(measurements.structure, out)
     variance = _variance(measurements.structure, image.by_position, image.by_attitude, image.late, found.levels)
     error = out.residual_px

@@ -1,7 +1,7 @@
 """What the adjustment finds."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
@@ -16,6 +16,17 @@ from linepose.adjustment.thresholds import (
 )
 from linepose.arrays import Floats
 
+_NAMED = 5  # contradictions in warnings
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """A known point, how many sigmas it is off what all else says, and the weight that it was given."""
+
+    point: int
+    sigmas: float
+    weight: float
+
 
 @dataclass(frozen=True)
 class Quality:
@@ -25,7 +36,8 @@ class Quality:
     in units of the normal equations, NaN where it could not be had; effective_draws, pareto_shape: of the draws of the
     levels; disagreement_sigmas (6,): of the hand measurement from what the data alone say, NaN without one;
     open_directions: names of the pose's parameters that the data leave to the hand measurement; drift_known: whether
-    there are times; clock_known: whether the data tell the clock offset, where it is sought.
+    there are times; clock_known: whether the data tell the clock offset, where it is sought; contradictions: known
+    points that the rest contradicts, the worst first.
     """
 
     converged: bool
@@ -36,6 +48,7 @@ class Quality:
     open_directions: tuple[str, ...]
     drift_known: bool
     clock_known: bool
+    contradictions: tuple[Contradiction, ...] = field(default=(), kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -73,7 +86,10 @@ class Adjustment:
     of the pose, and of the clock offset if it is estimated, in the columns of a chain (walker, step, pose,
     log_likelihood); clock_offset_s: what is added to the scan's time stamps to get the navigation's time, positive if
     the stamps are too early, and clock_offset_sigma_s: the posterior's, both NaN where it was not estimated.
-    Everything of a measurement is NaN where there is none.
+    Everything of a measurement is NaN where there is none. known_weight, known_sigmas (M,): of each known point, one
+    unless it contradicts the rest, and how many sigmas it is off them, NaN where nothing of its own is known;
+    common_shift_m, common_shift_sigma_m: how far the ground lies below the heights that err in common, NaN where none
+    are given.
     """
 
     pose: Floats
@@ -94,6 +110,10 @@ class Adjustment:
     diagnostics: Diagnostics
     clock_offset_s: float = math.nan
     clock_offset_sigma_s: float = math.nan
+    known_weight: Floats = field(default_factory=lambda: np.full(0, np.nan))
+    known_sigmas: Floats = field(default_factory=lambda: np.full(0, np.nan))
+    common_shift_m: float = math.nan
+    common_shift_sigma_m: float = math.nan
 
     @property
     def sigma(self) -> Floats:
@@ -138,6 +158,11 @@ def warnings_of(quality: Quality) -> tuple[str, ...]:
             f"data and hand measurement disagree by {np.nanmax(np.abs(quality.disagreement_sigmas)):.1f} sigmas: "
             "check the hand measurement and its sigmas"
         )
+    said.extend(
+        f"what is known of point {one.point} is {one.sigmas:.1f} sigmas off what all else says, and counts "
+        f"{one.weight:.2g} of what is stated: correct its coordinates, its sigmas or its label"
+        for one in quality.contradictions[:_NAMED]
+    )
     if quality.open_directions:
         said.append(f"the data leave {', '.join(quality.open_directions)} to the hand measurement: add other motions")
     if not quality.clock_known:

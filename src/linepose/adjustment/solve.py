@@ -78,6 +78,7 @@ def model_at(measurements: Measurements, knowledge: Knowledge, state: State) -> 
         knowledge.rates(measurements),
         measurements.point,
         state.points_m,
+        measurements.known.shifts,
         state.optics(knowledge.camera),
         linearised,
     )

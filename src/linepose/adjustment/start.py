@@ -20,6 +20,7 @@ _LEAST_DEPTH_M: Final = 0.1
 _NAMED: Final = 5  # observations in a message
 _FEW: Final = 0.34  # of the observations: these are wrong rather than the hand measurement
 _DOWNWARD: Final = 0.7  # of every line of sight's unit vector, from which on a survey is one from above
+_TURNS: Final = 2  # of feet and the heights known there
 _LEAST_DOWNWARD: Final = 0.1  # of a single ray, whose foot is else too far away
 _DEPTHS: Final = np.geomspace(0.3, 3000.0, 81)  # of the ground below the lowest camera (m), tried where none is known
 
@@ -50,14 +51,14 @@ def _feet(measurements: Measurements, centre: Floats, direction: Floats) -> Floa
         mean = np.column_stack([np.bincount(points, foot[:, i], n) / count for i in range(3)])
         return mean, float(np.mean(((foot - mean[points]) / depth) ** 2))
 
-    known = measurements.known.information[:, 2, 2] > 0
     lowest = float(centre[:, 2].max())
-    if np.any(known):
-        down_m = float(np.median(measurements.known.position_m[known, 2]))
-        start = feet_at(max(down_m, lowest + float(_DEPTHS[0])))[0]
-    else:
-        start = min((feet_at(lowest + depth) for depth in _DEPTHS), key=lambda one: one[1])[0]
-    start[:, 2] = np.where(known, measurements.known.position_m[:, 2], start[:, 2])
+    start = min((feet_at(lowest + depth) for depth in _DEPTHS), key=lambda one: one[1])[0]
+    for _ in range(_TURNS):
+        heights, known = measurements.known.heights(start)
+        if not np.any(known):
+            break
+        start = feet_at(max(float(np.median(heights[known])), lowest + float(_DEPTHS[0])))[0]
+        start[:, 2] = np.where(known, heights, start[:, 2])
     return start
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from linepose.adjustment.hand_measured import HandMeasuredPrior
 from linepose.adjustment.linearise import Optics
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import N_CAMERA, N_INTRINSICS, N_POSE, N_SHARED, Prior
+from linepose.adjustment.normal import CLOCK_OFFSET, COMMON_SHIFT, N_CAMERA, N_INTRINSICS, N_POSE, N_SHARED, Prior
 from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera
@@ -19,7 +19,8 @@ class State:
 
     position_m (3,), rotation (3, 3): of the camera in the body; principal_point_px, focal_length_m; clock_offset_s:
     what is added to the scan's time stamps to get the navigation's time; points_m (K, 3); correction (L, 6): of the
-    body poses, beside what the clock offset moves them.
+    body poses, beside what the clock offset moves them; shifts (K,): which points follow the common shift, and
+    common_shift_m: how far below its source's heights the ground is.
     """
 
     position_m: Floats
@@ -29,6 +30,8 @@ class State:
     clock_offset_s: float
     points_m: Floats
     correction: Floats
+    shifts: Floats
+    common_shift_m: float = 0.0
 
     @property
     def pose(self) -> Floats:
@@ -52,29 +55,33 @@ class State:
         )
 
     def moved(self, step: Floats, correction: Floats) -> "State":
-        """The state after a step (3 K + 9,) of all columns of the normal equations, with corrections."""
+        """The state after a step (3 K + 10,) of all columns of the normal equations, with corrections."""
         points, camera = step[:-N_CAMERA].reshape(-1, 3), step[-N_CAMERA:]
+        shift_m = float(camera[COMMON_SHIFT])
+        down = np.array([0.0, 0.0, 1.0])
         turn = rotations.matrix_from_rotation_vector(camera[N_SHARED + 3 :])
         return State(
             self.position_m + camera[N_SHARED : N_SHARED + 3],
             turn @ self.rotation,
             self.principal_point_px + float(camera[0]),
             self.focal_length_m + float(camera[1]),
-            self.clock_offset_s + float(camera[2]),
-            self.points_m + points,
+            self.clock_offset_s + float(camera[CLOCK_OFFSET]),
+            self.points_m + points + shift_m * self.shifts[:, None] * down,
             correction,
+            self.shifts,
+            self.common_shift_m + shift_m,
         )
 
 
 def camera_step(before: State, after: State) -> Floats:
-    """Step (9,) of the camera's columns of the normal equations that takes one state to the other."""
+    """Step (10,) of the camera's columns of the normal equations that takes one state to the other."""
     turn = rotations.rotation_vector_from_matrix(after.rotation @ before.rotation.T)
     intrinsics = [after.principal_point_px - before.principal_point_px, after.focal_length_m - before.focal_length_m]
-    clock_s = after.clock_offset_s - before.clock_offset_s
-    return np.concatenate([intrinsics, [clock_s], after.position_m - before.position_m, turn])
+    clock_s, shift_m = after.clock_offset_s - before.clock_offset_s, after.common_shift_m - before.common_shift_m
+    return np.concatenate([intrinsics, [shift_m, clock_s], after.position_m - before.position_m, turn])
 
 
-def state_at(pose: Floats, camera: Camera, points_m: Floats, n_measurements: int) -> State:
+def state_at(pose: Floats, camera: Camera, points_m: Floats, measurements: Measurements) -> State:
     """The state at a pose (6,) and points (K, 3): intrinsics of the camera's file, no clock offset, no corrections."""
     return State(
         np.asarray(pose[:3], dtype=float),
@@ -83,7 +90,8 @@ def state_at(pose: Floats, camera: Camera, points_m: Floats, n_measurements: int
         camera.focal_length_m,
         0.0,
         points_m,
-        np.zeros((n_measurements, 6)),
+        np.zeros((len(measurements.u_px), 6)),
+        measurements.known.shifts,
     )
 
 
@@ -124,17 +132,23 @@ class Knowledge:
         vector[:N_INTRINSICS] = error / sigma**2
         chi_squared = float(np.sum((error / sigma) ** 2))
         clock_sigma_s = self.clock_offset_sigma_s or 1.0
-        information[N_INTRINSICS, N_INTRINSICS] = clock_sigma_s**-2
-        vector[N_INTRINSICS] = -state.clock_offset_s / clock_sigma_s**2
+        information[CLOCK_OFFSET, CLOCK_OFFSET] = clock_sigma_s**-2
+        vector[CLOCK_OFFSET] = -state.clock_offset_s / clock_sigma_s**2
         chi_squared += (state.clock_offset_s / clock_sigma_s) ** 2
+        known = measurements.known
+        shift_sigma_m = known.shift_sigma_m or 1.0
+        information[COMMON_SHIFT, COMMON_SHIFT] = shift_sigma_m**-2
+        vector[COMMON_SHIFT] = -state.common_shift_m / shift_sigma_m**2
+        chi_squared += (state.common_shift_m / shift_sigma_m) ** 2
         if self.hand is not None:
             pose, pose_vector, pose_chi_squared = self.hand.information(state.position_m, state.rotation)
             information[N_SHARED:, N_SHARED:] = pose
             vector[N_SHARED:] = pose_vector
             chi_squared += pose_chi_squared
-        known = measurements.known
-        off = known.position_m - state.points_m
-        points_vector = np.einsum("kij,kj->ki", known.information, off)
+        position_m, points_information = known.at(state.points_m)
+        off = position_m - state.points_m
+        off[:, 2] += state.common_shift_m * known.shifts
+        points_vector = np.einsum("kij,kj->ki", points_information, off)
         return Prior(
-            information, vector, known.information, points_vector, chi_squared + float(np.sum(off * points_vector))
+            information, vector, points_information, points_vector, chi_squared + float(np.sum(off * points_vector))
         )

@@ -50,14 +50,15 @@ def _drifting(correlation_time_s: float = 60.0) -> NavigationErrorSettings:
 class FlightSettings:
     """A flight: its strips, its points and how wrong everything is.
 
-    A point is seen in 2 to `most_strips` strips; ground and relief as sigma of a normal distribution about height zero;
-    lateness in lines; the true camera differs from what is believed by its own sigmas, its lever arm by
+    A point is seen in `fewest_strips` to `most_strips` strips; heights of the ground have sigma `relief_m` about zero;
+    `lateness_lines` is a sigma; the true camera differs from what is believed by its own sigmas, its lever arm by
     `lever_sigma_m`, its turn by `turn_sigma_rad` about each axis of the body. Of `wrong_share` of the points one
     measurement or more lies `wrong_px` off, a bad match.
     """
 
     strips: tuple[Strip, ...] = CROSSED
     n_points: int = 200
+    fewest_strips: int = 2
     most_strips: int = 6
     relief_m: float = 1.0
     speed_m_s: float = 5.0
@@ -110,7 +111,7 @@ def simulate_flight(settings: FlightSettings, seed: int | np.random.Generator) -
     points = _candidates(settings, random)
     time_s, u_px = crossing_times(motion, true_camera, pose, points)
     seen = _thinned(np.isfinite(u_px), settings.most_strips, random)
-    kept = np.flatnonzero(seen.sum(axis=0) >= 2)[: settings.n_points]
+    kept = np.flatnonzero(seen.sum(axis=0) >= settings.fewest_strips)[: settings.n_points]
     points, time_s, u_px, seen = points[kept], time_s[:, kept], u_px[:, kept], seen[:, kept]
     row, column = np.nonzero(seen)
     true_u = u_px[row, column] + settings.pixel_px * random.standard_normal(len(row))

@@ -45,14 +45,17 @@ def complex_step(function, argument):
 
 
 def linearised(camera, lever, rotation, measurements, points, bodies):
-    """Residual (2 L,), and by theta (2 L, 9), point (2 L, 3), body (2 L, 6); clock offset last of theta."""
+    """Residual (2 L,), and by theta (2 L, 10), point (2 L, 3), body (2 L, 6); shift and clock offset last of theta."""
     residual, by_theta, by_point, by_body = [], [], [], []
     for line, point in enumerate(measurements.point):
-        body, p, none = bodies[line], points[point], np.zeros(9)
+        body, p, none = bodies[line], points[point], np.zeros(10)
         residual.append([measurements.u_px[line], 0] - project(camera, lever, rotation, none, body, p))
-        rate = measurements.rate[line]
+        rate, shift = measurements.rate[line], np.array([0.0, 0.0, measurements.known.shifts[point]])
         by_theta.append(
-            complex_step(lambda s, b=body, r=rate, p=p: project(camera, lever, rotation, s, b + r * s[8], p), none)
+            complex_step(
+                lambda s, b=body, r=rate, p=p, d=shift: project(camera, lever, rotation, s, b + r * s[9], p + d * s[8]),
+                none,
+            )
         )
         by_point.append(complex_step(lambda x, b=body: project(camera, lever, rotation, np.zeros(8), b, x), p))
         by_body.append(complex_step(lambda x, p=p: project(camera, lever, rotation, np.zeros(8), x, p), body))
@@ -95,7 +98,7 @@ def measurement_covariance(by_body, of_bodies, levels, camera, line_weight):
 
 
 def design(measurements, by_theta, by_point):
-    """Columns in the order of the normal equations: points, principal point, focal length, clock offset, pose."""
+    """Columns in the order of the normal equations: points, intrinsics, common shift, clock offset, pose."""
     n = len(measurements.u_px)
     points = np.zeros((2 * n, 3 * measurements.n_points))
     for i, k in enumerate(measurements.point):

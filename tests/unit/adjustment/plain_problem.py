@@ -70,7 +70,16 @@ class PlainProblem:
         )
         out = empty_linearised(1)
         body = (m.body_pose[line] + correction)[None]
-        linearise(m.u_px[line : line + 1], body, np.zeros((1, 6)), np.zeros(1, dtype=int), point[None], optics, out)
+        linearise(
+            m.u_px[line : line + 1],
+            body,
+            np.zeros((1, 6)),
+            np.zeros(1, dtype=int),
+            point[None],
+            np.zeros(1),
+            optics,
+            out,
+        )
         pixel = np.array([levels.pixel * file.sigmas.u_px, ACROSS_FLOOR_PX])[:, None]
         by_camera = -out.by_theta[0, :, :8] / pixel
         by_camera[:, 3:6] = by_camera[:, 3:6] @ rotations.left_jacobian_so3(camera[3:6])

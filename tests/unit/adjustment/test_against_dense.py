@@ -8,9 +8,10 @@ from scipy.optimize import least_squares
 
 from linepose.adjustment.estimate import unit_weights
 from linepose.adjustment.hand_measured import covariance_of_sigmas, hand_measured
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import empty_linearised, linearise
-from linepose.adjustment.measurements import KnownPoints, measurements_from_survey
+from linepose.adjustment.measurements import measurements_from_survey
 from linepose.adjustment.normal import solve_step, trailing_inverse, whitened_residual
 from linepose.adjustment.process import Weights, corrections
 from linepose.adjustment.residuals import normalised_residuals
@@ -43,7 +44,7 @@ class Case:
         self.measurements = m = measurements_from_survey(survey, CAMERA, known, line_period_s=timed_survey.LINE_S)
         self.knowledge = Knowledge(CAMERA, hand_measured(HAND, covariance_of_sigmas(0.1, np.deg2rad(2))), 0.02)
         n = len(m.u_px)
-        start = state_at(timed_survey.POSE, CAMERA, start_points(m, CAMERA, timed_survey.POSE), n)
+        start = state_at(timed_survey.POSE, CAMERA, start_points(m, CAMERA, timed_survey.POSE), m)
         self.state = replace(start, correction=1e-3 * random.normal(size=(n, 6)), clock_offset_s=0.03)
         self.levels = levels
         self.weights = Weights(random.uniform(0.3, 1.2, m.n_views), random.uniform(0.3, 1.2, n))
@@ -76,7 +77,7 @@ class Case:
         prior = self.knowledge.prior(state, m)
         self.information = np.zeros((self.a.shape[1],) * 2)
         self.vector = np.zeros(self.a.shape[1])
-        self.information[-9:, -9:], self.vector[-9:] = prior.camera, prior.camera_vector
+        self.information[-10:, -10:], self.vector[-10:] = prior.camera, prior.camera_vector
         for k in range(m.n_points):
             block = slice(3 * k, 3 * k + 3)
             self.information[block, block] = prior.points[k]
@@ -98,7 +99,7 @@ def test_derivatives_by_complex_step():
     m, state = case.measurements, case.state
     bodies = state.body_poses(m)
     out = empty_linearised(len(m.u_px))
-    assert linearise(m.u_px, bodies, m.rate, m.point, state.points_m, state.optics(CAMERA), out) == 0
+    assert linearise(m.u_px, bodies, m.rate, m.point, state.points_m, m.known.shifts, state.optics(CAMERA), out) == 0
     expected = dense.linearised(CAMERA, state.position_m, state.rotation, m, state.points_m, bodies)
     for found, value in zip(out, expected, strict=True):
         # a product of some ten factors, each rounded once
@@ -193,6 +194,28 @@ def test_points_of_which_something_is_known():
     assert case.done.log_determinant == pytest.approx(expected, rel=1e-9)
 
 
+def test_heights_that_err_in_common():
+    survey = timed_survey.make_survey(3, 5, seed=4)
+    information = np.zeros((5, 3, 3))
+    information[:4, 2, 2] = 1 / 0.02**2
+    shifts = np.array([1.0, 1.0, 0.0, 1.0, 0.0])
+    case = Case(LEVELS, survey=survey, known=KnownPoints(np.zeros((5, 3)), information, shifts, 0.3))
+    assert case.done.chi_squared == pytest.approx(case.chi_squared, rel=1e-9)
+    # the same as heights whose errors have a common part, with no parameter for it
+    plain = Case(LEVELS, survey=survey)
+    together = np.zeros_like(plain.information)
+    rows = 3 * np.flatnonzero(shifts) + 2
+    together[np.ix_(rows, rows)] = np.linalg.inv(0.02**2 * np.eye(3) + 0.3**2)
+    together[8, 8] = 1 / 0.02**2
+    expected = np.linalg.inv(plain.normal + together)
+    # points as they are follow the shift, which the columns count apart
+    found, follow = np.linalg.inv(case.normal), np.eye(len(case.normal))
+    follow[rows, -8] = 1.0
+    found = follow @ found @ follow.T
+    others = [i for i in range(len(found)) if i != len(found) - 8]
+    assert np.allclose(found[np.ix_(others, others)], expected[np.ix_(others, others)], rtol=1e-7, atol=1e-14)
+
+
 def test_least_squares_over_all_unknowns_finds_the_same_optimum():
     survey = timed_survey.make_survey(3, 3, seed=12)
     case = Case(LEVELS, survey=survey)
@@ -238,7 +261,7 @@ def test_least_squares_over_all_unknowns_finds_the_same_optimum():
         off = whitening @ np.concatenate([hand.pose[:3] - lever, turn])
         return np.concatenate([*rows, latent, off, intrinsics / sigmas, [offset_s / 0.02]])
 
-    scale = np.sqrt(np.diag(trailing_inverse(found.done.upper, 9)))[[3, 4, 5, 6, 7, 8, 0, 1, 2]]
+    scale = np.sqrt(np.diag(trailing_inverse(found.done.upper, 10)))[[4, 5, 6, 7, 8, 9, 0, 1, 3]]
     random = np.random.default_rng(1)
     start = np.concatenate([0.5 * random.normal(size=9), base.points_m.ravel(), np.zeros(root.shape[1])])
     best = least_squares(residuals, start, method="trf", x_scale="jac", xtol=1e-13, ftol=1e-14, gtol=1e-12)

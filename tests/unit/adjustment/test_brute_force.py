@@ -32,7 +32,7 @@ class Everything:
         self.m = m = measurements_from_survey(survey, CAMERA, line_period_s=timed_survey.LINE_S)
         self.knowledge = Knowledge(CAMERA, hand_measured(POSE, covariance_of_sigmas(0.01, np.deg2rad(0.3))))
         self.weights = unit_weights(m)
-        start = state_at(POSE, CAMERA, start_points(m, CAMERA, POSE), len(m.u_px))
+        start = state_at(POSE, CAMERA, start_points(m, CAMERA, POSE), m)
         self.found = solve(m, self.knowledge, start, LEVELS, self.weights, tolerance=1e-12)
         time_s = survey.time_us[m.row, m.column] * 1e-6
         covariance = survey.covariance[m.row, m.column]
@@ -64,7 +64,8 @@ class Everything:
         )
         out = empty_linearised(len(m.u_px))
         rates = self.knowledge.rates(m)
-        behind = linearise(m.u_px, state.body_poses(m), rates, m.point, state.points_m, state.optics(CAMERA), out)
+        optics, shifts = state.optics(CAMERA), m.known.shifts
+        behind = linearise(m.u_px, state.body_poses(m), rates, m.point, state.points_m, shifts, optics, out)
         if behind:
             return np.inf, np.zeros_like(x), None
         residual = out.residual_px / self.pixel
@@ -73,7 +74,7 @@ class Everything:
         gradient = np.zeros_like(x)
         gradient[:8] = -np.einsum("lri,lr->i", out.by_theta[..., :8], row)
         # the turn's own Jacobian differs from one by half of a turn of milliradians
-        gradient[:6] -= prior.camera_vector[3:]
+        gradient[:6] -= prior.camera_vector[-6:]
         gradient[6:8] -= prior.camera_vector[:2]
         by_point = np.zeros((m.n_points, 3))
         np.add.at(by_point, m.point, np.einsum("lri,lr->li", out.by_point, row))
@@ -96,7 +97,7 @@ class Everything:
             rows[2 * line : 2 * line + 2, 8 + self.n_points :] = out.by_body[line] @ of_line
         rows /= np.tile(self.pixel, n)[:, None]
         normal = rows.T @ rows
-        normal[:6, :6] += prior.camera[3:, 3:]
+        normal[:6, :6] += prior.camera[-6:, -6:]
         normal[6:8, 6:8] += prior.camera[:2, :2]
         normal[8 + self.n_points :, 8 + self.n_points :] += np.eye(self.root.shape[1])
         return x, np.linalg.inv(np.linalg.cholesky(normal)).T

@@ -35,7 +35,7 @@ def agreeing():
 
 def solved(survey, sigma_s):
     m = measurements_from_survey(survey, CAMERA, line_period_s=timed_survey.LINE_S)
-    start = state_at(POSE, CAMERA, start_points(m, CAMERA, POSE), len(m.u_px))
+    start = state_at(POSE, CAMERA, start_points(m, CAMERA, POSE), m)
     knowledge = Knowledge(CAMERA, None, sigma_s)
     return m, knowledge, start, solve(m, knowledge, start, LEVELS, unit_weights(m), tolerance=1e-10)
 
@@ -51,13 +51,13 @@ def test_rates_are_those_of_the_views_own_poses(agreeing):
 def test_the_column_is_the_derivative_of_the_residual_by_the_offset(agreeing):
     m = measurements_from_survey(agreeing, CAMERA)
     knowledge = Knowledge(CAMERA, None, 0.02)
-    state = state_at(POSE, CAMERA, start_points(m, CAMERA, POSE), len(m.u_px))
+    state = state_at(POSE, CAMERA, start_points(m, CAMERA, POSE), m)
     step_s = 1e-4
     ahead, behind = (
         model_at(m, knowledge, replace(state, clock_offset_s=0.003 + sign * step_s)).linearised.residual_px
         for sign in (1, -1)
     )
-    column = model_at(m, knowledge, replace(state, clock_offset_s=0.003)).linearised.by_theta[..., 8]
+    column = model_at(m, knowledge, replace(state, clock_offset_s=0.003)).linearised.by_theta[..., 9]
     # the third derivative times a square of 0.1 mm
     assert np.allclose(-(ahead - behind) / (2 * step_s), column, rtol=1e-6, atol=1e-6 * np.abs(column).max())
 

@@ -26,7 +26,7 @@ CAMERA = timed_survey.CAMERA
 def problem():
     m = measurements_from_survey(timed_survey.make_survey(3, 4, seed=12), CAMERA, line_period_s=timed_survey.LINE_S)
     knowledge = Knowledge(CAMERA, hand_measured(HAND, covariance_of_sigmas(0.1, np.deg2rad(2))))
-    return PlainProblem(m, knowledge, LEVELS, state_at(HAND, CAMERA, start_points(m, CAMERA, HAND), len(m.u_px)))
+    return PlainProblem(m, knowledge, LEVELS, state_at(HAND, CAMERA, start_points(m, CAMERA, HAND), m))
 
 
 @pytest.fixture(scope="module")

@@ -24,7 +24,7 @@ def normal_score(seed):
     """Score (6,) of the pose at the truth and the true levels, in units of the root of the normal equations."""
     survey = timed_survey.make_survey(10, 8, ERRORS, seed=seed)
     m = measurements_from_survey(survey, CAMERA, line_period_s=timed_survey.LINE_S)
-    start = state_at(POSE, CAMERA, start_points(m, CAMERA, POSE), len(m.u_px))
+    start = state_at(POSE, CAMERA, start_points(m, CAMERA, POSE), m)
     done = solve(m, Knowledge(CAMERA, None), start, LEVELS, unit_weights(m), tolerance=1e-8, n_held=N_POSE).done
     n = len(done.upper) - 1
     return done.upper[n - N_POSE : n, n]

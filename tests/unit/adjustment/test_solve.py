@@ -34,7 +34,7 @@ def test_it_converges_where_full_steps_rise(platforms_folder, seed):
     levels = Levels(*np.exp(random.uniform(np.log(LEAST), np.log(MOST))))
     lowest = []
     for start in (hand, truth):
-        state = state_at(start, camera, start_points(measurements, camera, start), len(measurements.u_px))
+        state = state_at(start, camera, start_points(measurements, camera, start), measurements)
         found = solve(measurements, knowledge, state, levels, unit_weights(measurements), tolerance=1e-4, max_steps=150)
         assert found.converged
         lowest.append(found.done.chi_squared)

@@ -5,8 +5,9 @@ import pytest
 
 from linepose.adjustment.estimate import unit_weights
 from linepose.adjustment.hand_measured import hand_measured
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.levels import START
-from linepose.adjustment.measurements import KnownPoints, measurements_from_survey
+from linepose.adjustment.measurements import measurements_from_survey
 from linepose.adjustment.solve import solve
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at
@@ -36,7 +37,7 @@ def test_the_same_optimum_from_20_degrees_and_3_metres(layout, prior):
     knowledge, random = Knowledge(flight.camera, hand), np.random.default_rng(1)
     found = []
     for pose in [flight.pose, *(moved(flight.pose, 20.0, 3.0, random) for _ in range(3))]:
-        start = state_at(pose, flight.camera, start_points(measurements, flight.camera, pose), len(measurements.u_px))
+        start = state_at(pose, flight.camera, start_points(measurements, flight.camera, pose), measurements)
         solution = solve(measurements, knowledge, start, START, unit_weights(measurements))
         assert solution.converged
         found.append([solution.done.chi_squared, *solution.state.pose])

@@ -1,0 +1,96 @@
+"""What is known of points before any measurement: control points, heights, a terrain model with a shift of its own."""
+
+from dataclasses import dataclass, field, replace
+from typing import Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linepose.arrays import Floats
+
+_DOWN: Final = 2
+
+
+class Surface(Protocol):
+    """The ground as a function of place."""
+
+    def __call__(self, north_east_m: Floats) -> tuple[Floats, Floats]:
+        """Down (K,) from the survey's origin (m), and its slopes by north and east (K, 2), at places (K, 2)."""
+        ...
+
+
+def _no_points() -> Floats:
+    return np.zeros(0)
+
+
+@dataclass(frozen=True)
+class KnownPoints:
+    """What is known of M points: position_m (M, 3) from the survey's origin, and its information (M, 3, 3).
+
+    The information is zero of a point of which nothing is known, `diag(0, 0, 1/s^2)` of a height that is known to s,
+    `I/s^2` of a control point. shifts (M,): one for points whose heights err by one amount in common, of sigma
+    shift_sigma_m, else zero; without any all are zero. on_surface (M,): points that lie on a surface, known to
+    surface_sigma_m, instead.
+    """
+
+    position_m: Floats
+    information: Floats
+    shifts: Floats = field(default_factory=_no_points)
+    shift_sigma_m: float | None = None
+    surface: Surface | None = None
+    on_surface: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    surface_sigma_m: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Fill in what says that there is none."""
+        n = len(self.position_m)
+        if len(self.shifts) != n:
+            object.__setattr__(self, "shifts", np.zeros(n))
+        if len(self.on_surface) != n:
+            object.__setattr__(self, "on_surface", np.zeros(n, dtype=bool))
+
+    @property
+    def any(self) -> NDArray[np.bool_]:
+        """Of which points (M,) something is known."""
+        return np.any(self.information != 0, axis=(1, 2)) | self.on_surface
+
+    @property
+    def apart(self) -> NDArray[np.bool_]:
+        """Of which points (M,) something is known that is theirs alone, and may contradict the rest."""
+        return np.any(self.information != 0, axis=(1, 2)) & ~self.on_surface & (self.shifts == 0)
+
+    def select(self, points: NDArray[np.int64]) -> "KnownPoints":
+        """The same of some of the points (K,)."""
+        return replace(
+            self,
+            position_m=self.position_m[points],
+            information=self.information[points],
+            shifts=np.ascontiguousarray(self.shifts[points]),
+            on_surface=self.on_surface[points],
+        )
+
+    def weighted(self, weight: Floats) -> "KnownPoints":
+        """The same with what is known of each point counted by weights (M,)."""
+        return replace(self, information=self.information * weight[:, None, None])
+
+    def at(self, points_m: Floats) -> tuple[Floats, Floats]:
+        """Position (M, 3) and information (M, 3, 3) as they are linear about points (M, 3)."""
+        if self.surface is None or not np.any(self.on_surface):
+            return self.position_m, self.information
+        rows = np.flatnonzero(self.on_surface)
+        down_m, slope = self.surface(points_m[rows, :_DOWN])
+        normal = np.column_stack([-slope, np.ones(len(rows))])
+        position, information = self.position_m.copy(), self.information.copy()
+        position[rows, :_DOWN], position[rows, _DOWN] = points_m[rows, :_DOWN], down_m
+        information[rows] = normal[:, :, None] * normal[:, None, :] / self.surface_sigma_m**2
+        return position, information
+
+    def heights(self, points_m: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+        """Known heights, as down (M,) from the origin (m), at places of points (M, 3), and which are known (M,)."""
+        position, information = self.at(points_m)
+        return position[:, _DOWN], information[:, _DOWN, _DOWN] > 0
+
+
+def nothing_known(n_points: int) -> KnownPoints:
+    """No knowledge of any of the points."""
+    return KnownPoints(np.zeros((n_points, 3)), np.zeros((n_points, 3, 3)))
