@@ -50,7 +50,7 @@ every_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.re
 every_other_page = pytest.mark.parametrize("page", OTHER_PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 
 
-@pytest.mark.parametrize("page", ["conventions.md"])
+@pytest.mark.parametrize("page", ["conventions.md", "without-a-board.md"])
 def test_python_examples_run(page):
     """In one namespace, one after the other; a page without an example would say nothing."""
     blocks = BLOCK.findall((DOCS / page).read_text())

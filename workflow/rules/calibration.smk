@@ -23,6 +23,7 @@ rule compile:
 rule adjust:  # all at once: no observation is removed, and the posterior needs no chain
     input:
         observations="results/{platform}/observations.parquet",
+        known=known_points,
         compiled=compiled,
         lost=remade_if_lost("results/{platform}/mcmc"),
     output:

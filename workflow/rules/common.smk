@@ -61,6 +61,9 @@ REMOVING_PLATFORMS = [
 ADJUSTED_PLATFORMS = [
     name for name in PROJECT.platforms if name not in REMOVING_PLATFORMS
 ]
+KNOWING_PLATFORMS = [  # that know something of their points
+    name for name, one in PROJECT.platforms.items() if one.points is not None
+]
 PAPER_RESULTS = []  # what `rule all` makes of the paper, where config/paper exists
 FURTHER_PAGES = {}  # that the report links to: title and address
 
@@ -149,6 +152,19 @@ def record(wildcards):
 def recorded_folder(wildcards):
     """The folder of what the platform recorded, as a rule's parameter."""
     return str(PROJECT.folder(wildcards.platform))
+
+
+def map_frame(wildcards):
+    """Where the platform's file says that its survey lies, as a rule's parameter; None where it does not."""
+    section = PROJECT.platforms[wildcards.platform].map_frame
+    return None if section is None else section.model_dump(mode="json")
+
+
+def known_points(wildcards):
+    """What is known of the platform's points; nothing where its file says nothing of them."""
+    if wildcards.platform not in KNOWING_PLATFORMS:
+        return []
+    return f"results/{wildcards.platform}/known_points.parquet"
 
 
 def readable(wildcards):

@@ -94,3 +94,25 @@ rule associate:
         code=script_digest("associate"),
     script:
         "../../scripts/associate.py"
+
+
+rule know_points:
+    input:
+        observations="results/{platform}/observations.parquet",
+        frame="results/{platform}/map_frame.parquet",
+        record=record,
+    output:
+        "results/{platform}/known_points.parquet",
+    log:
+        "results/logs/{platform}/know_points.log",
+    wildcard_constraints:
+        platform=names_of(KNOWING_PLATFORMS),
+    conda:
+        "../../environment.yml"
+    params:
+        platform=settings,
+        map_frame=map_frame,
+        folder=recorded_folder,
+        code=script_digest("know_points"),
+    script:
+        "../../scripts/know_points.py"

@@ -8,6 +8,7 @@ from typing import Final, TypeVar
 import numpy as np
 import pandas as pd
 
+from linepose.adjustment.known_points import KnownPoints
 from linepose.check import clock, covariances
 from linepose.check.camera import camera_findings
 from linepose.check.conventions.examine import HandSigmas, RecordingAt
@@ -18,6 +19,7 @@ from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, 
 from linepose.check.hand_measured import hand_findings
 from linepose.check.labels import count_findings, position_findings
 from linepose.check.motion import motion_findings
+from linepose.check.points import point_findings
 from linepose.check.prediction import predict
 from linepose.check.scans import scan_findings
 from linepose.check.told import readers_warnings
@@ -94,7 +96,12 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
     findings += [*more, *told]
     if observations is None or any(finding.level == Level.ERROR for finding in findings):
         return CheckReport(platform, tuple(findings))
-    more, sigmas = geometry_findings(settings, observations, _recorder(loaded, platform, root, observations))
+    more, known = point_findings(settings, root / loaded.folder(platform), observations)
+    findings += more
+    if any(finding.level == Level.ERROR for finding in more):
+        return CheckReport(platform, tuple(findings))
+    recorder = _recorder(loaded, platform, root, observations)
+    more, sigmas = geometry_findings(settings, observations, recorder, known)
     return CheckReport(platform, (*findings, *more), sigmas)
 
 
@@ -148,7 +155,10 @@ def recorded_findings(project: Project, platform: str, root: Path) -> tuple[list
 
 
 def geometry_findings(
-    settings: Platform, observations: pd.DataFrame, recording_at: RecordingAt
+    settings: Platform,
+    observations: pd.DataFrame,
+    recording_at: RecordingAt,
+    known_points: KnownPoints | None = None,
 ) -> tuple[list[Finding], tuple[PredictedSigma, ...]]:
     """Findings on motion, hand-measured pose, conventions and predicted sigmas, of a usable table of observations."""
     survey, camera = survey_from_table(observations), settings.intrinsics()
@@ -165,7 +175,7 @@ def geometry_findings(
     findings += more
     if any(finding.level == Level.ERROR for finding in more):
         return findings, ()
-    prediction = predict(survey, camera, hand, settings.pose_prior() is not None, point_m)
+    prediction = predict(survey, camera, hand, settings.pose_prior() is not None, point_m, known_points)
     if prediction.adjusted is not None:
         findings += exchange_findings(survey, camera, prediction.adjusted)
     return [*findings, *prediction.findings], prediction.sigmas

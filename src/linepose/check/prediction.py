@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.result import Adjustment
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.arrays import Floats
@@ -42,11 +43,18 @@ class Prediction:
     adjusted: Adjustment | None = None
 
 
-def predict(survey: Survey, camera: Camera, hand: HandMeasured, prior: bool, point_m: Floats) -> Prediction:
+def predict(
+    survey: Survey,
+    camera: Camera,
+    hand: HandMeasured,
+    prior: bool,
+    point_m: Floats,
+    known_points: KnownPoints | None = None,
+) -> Prediction:
     """What a calibration will know, from the observations and the hand-measured pose.
 
     `prior`: whether the hand measurement counts as a prior; point_m (M, 3): the pattern's points at that pose, from the
-    survey's origin.
+    survey's origin; known_points: what else is known of them.
     """
     ideal = replayed(survey, camera, hand.pose, point_m)
     swept = np.isfinite(ideal.u_px).sum() / np.isfinite(survey.u_px).sum()
@@ -59,7 +67,7 @@ def predict(survey: Survey, camera: Camera, hand: HandMeasured, prior: bool, poi
         return Prediction((), (warning(_SUBJECT, found, advice),))
     settings = _DRAWS.replaced(hand_measured_prior=prior)
     try:
-        adjusted = AdjustmentEstimator(survey, camera, hand, settings).adjusted()
+        adjusted = AdjustmentEstimator(survey, camera, hand, settings, known_points).adjusted()
     except EstimationError as fault:
         found = f"a direction of the pose stays open; {spread_in_words(survey)} ({fault})"
         advice = "add passes from other sides, at other distances, and with the vehicle rolled and pitched"

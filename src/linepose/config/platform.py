@@ -19,8 +19,9 @@ from pydantic import (
 from linepose.arrays import Floats
 from linepose.config.map_frame import MapFrameSection
 from linepose.config.outline import OutlineSection
+from linepose.config.points import PointsSection
 from linepose.errors import InputError
-from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName
+from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, noise_model
 from linepose.geometry.camera import Camera
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, faults_of, validated
@@ -108,6 +109,7 @@ class Platform(Settings):
         description="hand_measured: the hand measurement is a Gaussian prior of the pose, not only the search's start. "
         "none: the data decide alone, as in the paper.",
     )
+    points: PointsSection | None = Field(None, description="What is known of points beside their measurements.")
     map_frame: MapFrameSection | None = Field(None, description="Where the survey lies on the Earth.")
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
     experiments: dict[str, Any] = Field({}, description="Experiments on the accepted observations.")
@@ -116,6 +118,12 @@ class Platform(Settings):
     def _has_one_origin(self) -> "Platform":
         if (self.simulation is None) == (self.source.dataset is None):
             raise ValueError("either source.dataset, or a simulation with a source of kind scans")
+        return self
+
+    @model_validator(mode="after")
+    def _can_use_points(self) -> "Platform":
+        if self.points is not None and noise_model(self.noise_model).removes_outliers:
+            raise ValueError(f"noise_model adjustment with points: {self.noise_model} has no use for them")
         return self
 
     def intrinsics(self) -> Camera:

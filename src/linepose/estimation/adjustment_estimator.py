@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from linepose.adjustment.adjust import adjust
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.result import Adjustment
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.errors import EstimationError, InputError
@@ -28,6 +29,7 @@ class AdjustmentEstimator(Estimator):
     camera: Camera
     hand_measured: HandMeasured
     settings: AdjustmentSettings = field(default_factory=AdjustmentSettings)
+    known_points: KnownPoints | None = None
 
     def select(self, numbers: Sequence[int]) -> "AdjustmentEstimator":
         """The same with these observations only; the tape measured once."""
@@ -41,6 +43,7 @@ class AdjustmentEstimator(Estimator):
             self.hand_measured.pose,
             self.hand_measured.body_covariance,
             self.settings.replaced(seed=seed),
+            self.known_points,
             start_pose=start,
         )
 
@@ -89,4 +92,4 @@ class AdjustmentEstimator(Estimator):
 def adjustment_estimator(survey: Survey, conditions: Conditions) -> AdjustmentEstimator:
     """The adjustment of a survey under these conditions."""
     settings = AdjustmentSettings(**dict(conditions.adjustment), hand_measured_prior=conditions.prior)
-    return AdjustmentEstimator(survey, conditions.camera, conditions.hand_measured, settings)
+    return AdjustmentEstimator(survey, conditions.camera, conditions.hand_measured, settings, conditions.known_points)

@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.settings import AdjustmentSection
 from linepose.arrays import Floats
 from linepose.estimation.optimise import Search
@@ -39,7 +40,8 @@ class Estimate:
 class Conditions:
     """What is known beside a survey, and how it is estimated from.
 
-    `prior`: whether the hand measurement counts as a prior of the pose, or is but the search's start.
+    `prior`: whether the hand measurement counts as a prior of the pose, or is but the search's start; known_points: of
+    the survey's points, if something is known of them.
     """
 
     camera: Camera
@@ -48,6 +50,7 @@ class Conditions:
     search: Search = field(default_factory=Search)
     sampling: SamplingSettings = field(default_factory=SamplingSettings)
     adjustment: AdjustmentSection = field(default_factory=AdjustmentSection)
+    known_points: KnownPoints | None = None
 
 
 class Estimator(ABC):

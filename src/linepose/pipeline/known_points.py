@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pandas as pd
@@ -12,6 +12,7 @@ from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.measurements import Measurements, measurements_from_survey
 from linepose.adjustment.start import start_points
 from linepose.arrays import Floats
+from linepose.config.map_frame import MapFrameSection
 from linepose.config.platform import Platform
 from linepose.config.points import GroundSection
 from linepose.errors import InputError
@@ -33,14 +34,14 @@ _ROUNDS: Final = 5
 log = logging.getLogger(__name__)
 
 
-def survey_frame(platform: Platform, table: pd.DataFrame) -> LocalFrame | None:
+def survey_frame(section: Mapping[str, Any] | None, table: pd.DataFrame) -> LocalFrame | None:
     """Where north, east, down are on the Earth: as the platform's file says, or its log; None if neither does.
 
-    table: columns as in `MAP_FRAME`.
+    section: `map_frame` of the file; table: of the log, columns as in `MAP_FRAME`.
     """
-    section = platform.map_frame
     if section is not None:
-        return tangent_frame(section.origin) if section.origin is not None else projected_frame(section.crs or "")
+        said = MapFrameSection.model_validate(section)
+        return tangent_frame(said.origin) if said.origin is not None else projected_frame(said.crs or "")
     if table.empty:
         return None
     row = table.iloc[0]
@@ -102,7 +103,7 @@ def _ground(
         np.zeros((survey.n_points, 3)),
         np.zeros((survey.n_points, 3, 3)),
         surface=terrain,
-        on_surface=np.isfinite(survey.u_px).any(axis=0),
+        on_surface=np.asarray(np.isfinite(survey.u_px).any(axis=0)),
         surface_sigma_m=ground.sigma_m,
     )
     measurements = measurements_from_survey(survey, platform.camera, everywhere)
@@ -128,7 +129,7 @@ def _ground(
 
 
 def _check_place(platform: Platform, survey: Survey, known: Mapping[str, PointKnowledge], path: Path) -> None:
-    """Raise InputError where control points lie elsewhere, as a whole, than scans see them at the hand-measured pose."""
+    """Raise InputError where control points as a whole are not where scans see them at the hand-measured pose."""
     arrays = KnownPoints(*arrays_of(known, names_of_points(survey), survey.origin_m))
     measurements = measurements_from_survey(survey, platform.camera, arrays)
     full = np.linalg.matrix_rank(measurements.known.information) == 3

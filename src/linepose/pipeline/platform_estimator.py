@@ -1,5 +1,6 @@
 """What a platform's file asks to estimate with."""
 
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.settings import AdjustmentSection
 from linepose.config.platform import Platform
 from linepose.estimation.estimator import Conditions, Estimator
@@ -25,6 +26,7 @@ def platform_conditions(
     sampling: SamplingSettings | None = None,
     adjustment: AdjustmentSection | None = None,
     camera: Camera | None = None,
+    known_points: KnownPoints | None = None,
 ) -> Conditions:
     """What is known of a platform beside its survey; with another camera than its own if given."""
     return Conditions(
@@ -34,6 +36,7 @@ def platform_conditions(
         search or Search(),
         sampling or SamplingSettings(),
         adjustment or AdjustmentSection(),
+        known_points,
     )
 
 

@@ -130,4 +130,4 @@ def test_many_points_find_the_same_offset():
     many = solve_many(m, knowledge, start, LEVELS, unit_weights(m))
     sigma = np.sqrt(trailing_inverse(few.done.upper, 7)[0, 0])
     assert many.state.clock_offset_s == pytest.approx(few.state.clock_offset_s, abs=3e-3 * sigma)
-    assert np.sqrt(many.camera_covariance[2, 2]) == pytest.approx(sigma, rel=1e-3)
+    assert np.sqrt(many.camera_covariance[3, 3]) == pytest.approx(sigma, rel=1e-3)
