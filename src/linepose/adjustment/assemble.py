@@ -78,7 +78,7 @@ def assembled(
         measurement_weight=gridded(weights.of_measurement, *grid),
         normalised=gridded(fit.normalised, *grid),
         samples=_samples(state, spread, settings),
-        diagnostics=_diagnostics(measurements, knowledge, done, step_covariance, clock_sigma_s),
+        diagnostics=_diagnostics(measurements, knowledge, done, step_covariance, clock_sigma_s, survey.names),
         known_weight=known[0],
         known_sigmas=known[1],
         common_shift_m=state.common_shift_m if shifted else np.nan,
@@ -123,6 +123,7 @@ def _diagnostics(
     done: AllAtOnce,
     covariance: Floats,
     clock_sigma_s: float,
+    names: np.ndarray,
 ) -> Diagnostics:
     fit, found, curved, spread = done.fit, done.found, done.curved, done.spread
     disagreement = np.full(N_POSE, np.nan)
@@ -138,7 +139,9 @@ def _diagnostics(
         open_directions=open_directions,
         drift_known=measurements.timed,
         contradictions=tuple(
-            Contradiction(int(measurements.points[row]), float(done.known.sigmas[row]), float(done.known.weight[row]))
+            Contradiction(
+                str(names[measurements.points[row]]), float(done.known.sigmas[row]), float(done.known.weight[row])
+            )
             for row in done.known.contradicting
         ),
         clock_known=not clock_sigma_s > _OPEN_SHARE * (knowledge.clock_offset_sigma_s or np.inf),

@@ -27,6 +27,7 @@ _LEVEL_TOLERANCE: Final = 0.02  # of a logarithm
 _SWEEPS: Final = 6  # of weights at fixed levels
 _SCREEN_SWEEPS: Final = 3
 _ROUNDS: Final = 20
+_RESUMED: Final = 4  # times that an estimate which would be the best goes on for so many rounds
 _SLOPE: Final = 0.03  # of the levels' density by their logarithms
 _TIGHT, _LOOSE = 1e-6, 1e-3  # of chi squared, at the end and while weights move
 
@@ -53,19 +54,47 @@ def with_tails(
             raise failure or EstimationError("adjustment: no estimate")
         return normal
     candidates = [normal] if normal is not None else []
+    unsettled: list[tuple[Estimate, TailWeights]] = []
     for kind in _promising(normal) if normal is not None and _is_sound(normal, guided) else TailKind:
         tails = unit_tail_weights(measurements, kind)
         try:
             heavy, tails = _heavy_tailed(measurements, guided, start, settings.start, tails, settings)
             if knowledge.hand is not guided.hand:
-                heavy, _ = _heavy_tailed(measurements, knowledge, heavy.solution.state, heavy.levels, tails, settings)
+                heavy, tails = _heavy_tailed(
+                    measurements, knowledge, heavy.solution.state, heavy.levels, tails, settings
+                )
         except EstimationError as error:
             failure = failure or error
             continue
         candidates.append(heavy)
+        if not heavy.converged:
+            unsettled.append((heavy, tails))
     if not candidates:
         raise failure or EstimationError("adjustment: no estimate")
+    best = _best(candidates, guided)
+    for one, tails in unsettled:  # where many are bad, weights and levels take long to settle
+        if _preference(one) > _preference(best):
+            candidates.append(_settled(measurements, knowledge, one, tails, settings))
+    return _best(candidates, guided)
+
+
+def _best(candidates: list[Estimate], guided: Knowledge) -> Estimate:
+    """The sound one of most evidence."""
     return max(candidates, key=lambda one: (_is_sound(one, guided), _preference(one)))
+
+
+def _settled(
+    measurements: Measurements, knowledge: Knowledge, one: Estimate, tails: TailWeights, settings: AdjustmentSettings
+) -> Estimate:
+    """A heavy-tailed estimate whose search goes on until it settles, or for long."""
+    for _ in range(_RESUMED):
+        try:
+            one, tails = _heavy_tailed(measurements, knowledge, one.solution.state, one.levels, tails, settings)
+        except EstimationError:
+            break
+        if one.converged:
+            break
+    return one
 
 
 def _is_sound(one: Estimate, guided: Knowledge) -> bool:

@@ -21,9 +21,9 @@ _NAMED = 5  # contradictions in warnings
 
 @dataclass(frozen=True)
 class Contradiction:
-    """A known point, how many sigmas it is off what all else says, and the weight that it was given."""
+    """A known point by its name, how many sigmas it is off what all else says, and the weight that it was given."""
 
-    point: int
+    point: str
     sigmas: float
     weight: float
 

@@ -33,9 +33,16 @@ def start_points(measurements: Measurements, camera: Camera, pose: Floats) -> Fl
         camera, body_from_camera, pose[:3], body, measurements.body_pose[:, :3], measurements.u_px
     )
     direction = direction / np.linalg.norm(direction, axis=-1, keepdims=True)
-    if np.min(body[:, 2] @ body_from_camera[:, 2]) < _DOWNWARD:
+    if not looks_down(measurements, pose):
         return _met(measurements, centre, direction)
     return _feet(measurements, centre, direction)
+
+
+def looks_down(measurements: Measurements, pose: Floats) -> bool:
+    """Whether a camera at a pose (6,) looks down wherever it sees a point: a survey from above."""
+    line_of_sight = rotations.matrix_from_rotation_vector(pose[3:])[:, 2]
+    body = rotations.matrix_from_euler(measurements.body_pose[:, 3:])
+    return bool(np.min(body[:, 2] @ line_of_sight) >= _DOWNWARD)
 
 
 def _feet(measurements: Measurements, centre: Floats, direction: Floats) -> Floats:

@@ -4,10 +4,12 @@ from typing import Final
 
 import numpy as np
 
+from linepose.adjustment.measurements import measurements_from_survey
+from linepose.adjustment.start import looks_down, start_points
 from linepose.arrays import Floats
 from linepose.check.finding import Finding, error, numbers, ok, span, warning
 from linepose.check.replay import in_camera
-from linepose.geometry.camera import Camera
+from linepose.geometry.camera import Camera, pixel_from_normalised
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.survey.observations import Survey
 
@@ -25,7 +27,8 @@ ADVICE: Final = (
 def hand_findings(survey: Survey, camera: Camera, pose: Floats, covariance: Floats) -> tuple[list[Finding], Floats]:
     """Findings on a hand-measured pose (6,) with covariance (6, 6), and the points (M, 3) that it gives.
 
-    The points are those of the paper's equations, in which points behind the camera count as if in front.
+    The points are those of the paper's equations, in which points behind the camera count as if in front; of a survey
+    from above they are the feet of rays on the ground.
     """
     findings = []
     if np.linalg.norm(pose[:3]) > _LONGEST_ARM_M:
@@ -33,27 +36,45 @@ def hand_findings(survey: Survey, camera: Camera, pose: Floats, covariance: Floa
         findings.append(
             warning(_SUBJECT, found, "give hand_measured.position_m in metres, from the navigation's origin")
         )
-    residuals = PublishedLikelihood(survey, camera).without_cheirality().residuals(pose)
-    distance = in_camera(pose, survey.position_m, survey.euler_rad, residuals.point_m)[..., 2]
-    seen = np.isfinite(residuals.error_px)
+    point_m, error_px = _points_and_errors(survey, camera, pose)
+    distance = in_camera(pose, survey.position_m, survey.euler_rad, point_m)[..., 2]
+    seen = np.isfinite(error_px)
     behind = seen & (distance <= 0)
     if behind.any():
         views = survey.number[behind.any(axis=1)]
         found = f"{int(behind.sum())} of {int(seen.sum())} points lie behind the camera (observation {numbers(views)})"
-        return [*findings, error(_SUBJECT, found, ADVICE)], residuals.point_m
+        return [*findings, error(_SUBJECT, found, ADVICE)], point_m
     where = f"the points lie {span(distance[seen])} m in front of the camera"
     if distance[seen].min() < _NEAR_M or distance[seen].max() > _FAR_M:
         findings.append(warning(_SUBJECT, where, "check the units of positions and of hand_measured.position_m (m)"))
     else:
         findings.append(ok(_SUBJECT, where))
-    mean_px = float(np.nanmean(residuals.error_px))
+    mean_px = float(np.nanmean(error_px))
     allowed_px = expected_error_px(camera, covariance, float(np.median(distance[seen])))
     told = f"it reproduces the pixels within {mean_px:.1f} px on average; its sigmas explain about {allowed_px:.0f} px"
     if mean_px > _EXPLAINED * allowed_px:
         findings.append(warning(_SUBJECT, told, f"{ADVICE}; and the navigation's axes and angles"))
     else:
         findings.append(ok(_SUBJECT, told))
-    return findings, residuals.point_m
+    return findings, point_m
+
+
+def _points_and_errors(survey: Survey, camera: Camera, pose: Floats) -> tuple[Floats, Floats]:
+    """Points (M, 3) at a pose (6,), and how far their pixels are off (N, M).
+
+    Where the camera looks down, rays are nearly parallel: points are their feet on the ground.
+    """
+    measurements = measurements_from_survey(survey, camera)
+    if not looks_down(measurements, pose):
+        residuals = PublishedLikelihood(survey, camera).without_cheirality().residuals(pose)
+        return residuals.point_m, residuals.error_px
+    point_m = np.full((survey.n_points, 3), np.nan)
+    point_m[measurements.points] = start_points(measurements, camera, pose)
+    seen = in_camera(pose, survey.position_m, survey.euler_rad, point_m)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = pixel_from_normalised(camera, seen[..., 0] / seen[..., 2]) - survey.u_px
+        across = camera.focal_length_px * seen[..., 1] / seen[..., 2]
+    return point_m, np.hypot(along, across)
 
 
 def expected_error_px(camera: Camera, covariance: Floats, distance_m: float) -> float:

@@ -8,8 +8,7 @@ from linepose.adjustment.known_points import KnownPoints
 from linepose.check.finding import Finding, of_fault, ok
 from linepose.config.platform import Platform
 from linepose.errors import InputError
-from linepose.pipeline.known_points import known_of_survey, known_points, survey_frame
-from linepose.pipeline.load import map_frame_table
+from linepose.pipeline.known_points import known_of_platform, known_of_survey
 from linepose.survey.observations import survey_from_table
 
 _SUBJECT = "known points"
@@ -21,14 +20,12 @@ def point_findings(
     """Findings on control points and ground, and what is known of the points; None where nothing is."""
     if settings.points is None:
         return [], None
-    section = None if settings.map_frame is None else settings.map_frame.model_dump()
-    survey = survey_from_table(observations)
     try:
-        known = known_points(settings, folder, survey, survey_frame(section, map_frame_table(settings, folder)))
+        known = known_of_platform(settings, folder, observations)
     except InputError as fault:
         return [of_fault(_SUBJECT, fault)], None
     shared = sum(one.shared for one in known.values())
     found = f"something is known of {len(known)} points"
     if shared:
         found += f", of {shared} a height that errs in common"
-    return [ok(_SUBJECT, found)], known_of_survey(known, survey)
+    return [ok(_SUBJECT, found)], known_of_survey(known, survey_from_table(observations))

@@ -13,6 +13,7 @@ from linepose.config.project import Project
 from linepose.errors import InputError
 from linepose.pipeline.calibrate import CalibrationSettings, calibrate, checked_rows
 from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.known_points import known_of_platform
 from linepose.pipeline.load import read_observations
 from linepose.pipeline.project_folder import find_project, load_platform_project
 from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
@@ -246,7 +247,8 @@ def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
     """
     loaded = _loaded(platform, project)
     settings, study = loaded.platforms[platform], loaded.study
-    observations = read_observations(settings, recorded_folder(loaded, platform, find_project(project)))
+    folder = recorded_folder(loaded, platform, find_project(project))
+    observations = read_observations(settings, folder)
     calibrated = calibrate(
         observations,
         settings.intrinsics(),
@@ -262,6 +264,7 @@ def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
             seed=study.seed,
         ),
         platform,
+        known_points=known_of_platform(settings, folder, observations),
     )
     return replace(calibrated, platform=settings)
 

@@ -4,12 +4,14 @@ The stages are those of the workflow, on the accepted observations only; with th
 same to the last bit.
 """
 
+from collections.abc import Mapping
 from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.settings import AdjustmentSection
 from linepose.config.platform import Platform
 from linepose.config.study import Study
@@ -26,6 +28,7 @@ from linepose.geometry.pose import N_PARAMETERS
 from linepose.likelihood.prior import pose_prior
 from linepose.pipeline.adjusted_tables import adjusted_tables
 from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.known_points import known_of_survey
 from linepose.pipeline.residual_tables import residual_tables
 from linepose.pipeline.results import Results
 from linepose.pipeline.stages import (
@@ -46,6 +49,7 @@ from linepose.survey.observations import (
     check_determined,
     survey_from_table,
 )
+from linepose.survey.point_knowledge import PointKnowledge
 from linepose.survey.point_names import WHAT, nameless, point_names
 
 _NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
@@ -83,6 +87,8 @@ def calibrate(
     hand_measured: HandMeasured,
     settings: CalibrationSettings | None = None,
     name: str = "calibration",
+    *,
+    known_points: Mapping[str, PointKnowledge] | None = None,
 ) -> Calibration:
     """The camera's pose on the vehicle, and how sure it is.
 
@@ -99,6 +105,8 @@ def calibrate(
         How it is done.
     name : str, optional
         What messages and exports call the platform.
+    known_points : mapping of str to PointKnowledge, optional
+        What is known of points by their names, beside their measurements.
 
     Returns
     -------
@@ -125,16 +133,29 @@ def calibrate(
     observations = _checked(observations, camera.n_pixels)
     survey = survey_from_table(observations)
     check_determined(survey, N_PARAMETERS)
-    make = _removed_and_sampled if noise_model(settings.noise_model).removes_outliers else _adjusted
-    tables = {"observations": observations, **make(survey, camera, hand_measured, settings)}
+    if noise_model(settings.noise_model).removes_outliers:
+        made = _removed_and_sampled(survey, camera, hand_measured, settings)
+    else:
+        made = _adjusted(survey, camera, hand_measured, settings, known_of_survey(known_points or {}, survey))
+    tables = {"observations": observations, **made}
     results = Results(name, in_memory=tables)
     return Calibration(results, hand_measured, camera, settings.threshold_px, settings.noise_model)
 
 
 def _adjusted(
-    survey: Survey, camera: Camera, hand_measured: HandMeasured, settings: CalibrationSettings
+    survey: Survey,
+    camera: Camera,
+    hand_measured: HandMeasured,
+    settings: CalibrationSettings,
+    known_points: KnownPoints | None,
 ) -> dict[str, pd.DataFrame]:
-    conditions = Conditions(camera, hand_measured, settings.prior == "hand_measured", adjustment=settings.adjustment)
+    conditions = Conditions(
+        camera,
+        hand_measured,
+        settings.prior == "hand_measured",
+        adjustment=settings.adjustment,
+        known_points=known_points,
+    )
     return adjusted_tables(adjustment_estimator(survey, conditions), settings.seed)
 
 

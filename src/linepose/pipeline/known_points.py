@@ -21,7 +21,8 @@ from linepose.geometry import rotations
 from linepose.inputs.control_points import read_control_points
 from linepose.inputs.local_frame import LocalFrame, projected_frame, tangent_frame
 from linepose.inputs.terrain import read_terrain
-from linepose.survey.observations import Survey
+from linepose.pipeline.load import map_frame_table
+from linepose.survey.observations import Survey, survey_from_table
 from linepose.survey.point_knowledge import PointKnowledge, arrays_of
 
 _SIGMAS: Final = 4.0  # by which control points may lie off where scans see them
@@ -51,8 +52,17 @@ def survey_frame(section: Mapping[str, Any] | None, table: pd.DataFrame) -> Loca
 
 
 def names_of_points(survey: Survey) -> list[str]:
-    """The names of all points (M,) that a survey may have."""
-    return [str(point) for point in range(survey.n_points)]
+    """The names of a survey's points (M,)."""
+    return [str(name) for name in survey.names]
+
+
+def known_of_platform(platform: Platform, folder: Path, observations: pd.DataFrame) -> dict[str, PointKnowledge]:
+    """The same from a table of observations and what the platform's file or its log says of its place on the Earth."""
+    if platform.points is None:
+        return {}
+    section = None if platform.map_frame is None else platform.map_frame.model_dump()
+    frame = survey_frame(section, map_frame_table(platform, folder))
+    return known_points(platform, folder, survey_from_table(observations), frame)
 
 
 def known_points(

@@ -91,7 +91,7 @@ def test_a_height_alone_and_the_surveys_own_axes(flight, tmp_path):
 
 @pytest.mark.parametrize(
     ("shift_m", "word"),
-    [((60.0, 0.0, 0.0), "60.0 m east"), ((0.0, 0.0, 47.0), "-4"), ((-90.0, 180.0, 0.0), "of where")],
+    [((60.0, 0.0, 0.0), " m east"), ((0.0, 0.0, 47.0), "height_offset_m"), ((-90.0, 180.0, 0.0), " m north")],
 )
 def test_control_points_of_another_datum_are_told(flight, tmp_path, shift_m, word):
     write_control(tmp_path, on_map(flight.points_m[:8]) + shift_m)
