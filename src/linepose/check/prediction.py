@@ -28,6 +28,7 @@ TOO_LARGE: Final = 0.5  # of the hand measurement's sigma
 _SWEPT: Final = 0.5  # of the points, below which the replayed survey is not this one
 _UNITS: Final = ("m", "m", "m", "rad", "rad", "rad")
 _SUBJECT: Final = "predicted sigmas"
+_CONTRADICTING: Final = "correct its coordinates, its sigmas or its label; it counts little as it is"
 _DRAWS: Final = AdjustmentSettings(n_draws=60, n_samples=10)
 
 
@@ -72,6 +73,10 @@ def predict(
         found = f"a direction of the pose stays open; {spread_in_words(survey)} ({fault})"
         advice = "add passes from other sides, at other distances, and with the vehicle rolled and pitched"
         return Prediction((), (error(_SUBJECT, found, advice),))
+    against = tuple(
+        warning("known points", f"point {one.point} is {one.sigmas:.1f} sigmas off what all else says", _CONTRADICTING)
+        for one in adjusted.diagnostics.contradictions
+    )
     names, in_axes = in_body_axes(POSE_COLUMNS, adjusted.pose, adjusted.covariance)
     sigma, by_hand = np.sqrt(np.diag(in_axes)), np.sqrt(np.diag(hand.body_covariance))
     sigmas = tuple(
@@ -81,7 +86,7 @@ def predict(
     large = [one for one in sigmas if one.predicted > TOO_LARGE * one.hand]
     if not large:
         told = f"all below half of the hand measurement's; {spread_in_words(survey)}"
-        return Prediction(sigmas, (ok(_SUBJECT, told),), adjusted)
+        return Prediction(sigmas, (*against, ok(_SUBJECT, told)), adjusted)
     words = identifiability(names, in_axes, by_hand).weakest_in_words()
     worst = max(large, key=lambda one: one.predicted / one.hand)
     told = ", ".join(f"{one.name} {size(one.predicted, one.unit)} ({size(one.hand, one.unit)})" for one in large)
@@ -90,7 +95,7 @@ def predict(
     ranked = best_motions(motions(ideal, promise, point_m), sigmas.index(worst))
     ways = "; or ".join(f"{way}: {worst.name} to {size(value, worst.unit)}" for way, value in ranked[:2])
     advice = f"drive four more passes {ways}" if ways else "add passes from other sides and with other tilts"
-    return Prediction(sigmas, (warning(_SUBJECT, found, advice),), adjusted)
+    return Prediction(sigmas, (*against, warning(_SUBJECT, found, advice)), adjusted)
 
 
 def size(value: float, unit: str) -> str:
