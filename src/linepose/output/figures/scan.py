@@ -113,6 +113,8 @@ def _show(axes: Axes, intensity: Intensity, lines: tuple[int, int], pixels: tupl
 def _without_scans(platform: Platform) -> str:
     kind = platform.source.kind
     told = "This platform has no scans: its points were labelled before they came here."
+    if kind != "labelled_views" and platform.target.artwork() is None:
+        return "This platform has no pattern: its points were labelled by name."
     return told if kind == "labelled_views" else ""
 
 

@@ -17,7 +17,9 @@ from linepose.inputs.source import ScansSection
 from linepose.inputs.targets.board_in_scan import BoardInScan, fit_board
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.table_checks import usable_rows
-from linepose.survey.pattern import SHEET_M, board_points
+from linepose.survey.pattern import SHEET_M
+from linepose.survey.targets.registry import Target
+from linepose.survey.targets.rings import RingsSection
 
 _FEWEST_POINTS: Final = 6
 _SLOW: Final = 2.5  # times as many lines as the quick pass
@@ -27,17 +29,21 @@ _MIRROR: Final = np.diag([1.0, -1.0])  # what the other way round does to pixels
 
 @dataclass(frozen=True)
 class ScanExample:
-    """One observation's scan lines (L, P), the points found in it (point, u_px, line), and where the sheet lies."""
+    """One observation's scan lines (L, P), the points found in it (point, u_px, line), and where the sheet lies.
+
+    `sheet_m` is the sheet's size along x and y.
+    """
 
     title: str
     intensity: Intensity
     points: pd.DataFrame
     board: BoardInScan
+    sheet_m: tuple[float, float] = SHEET_M
 
     def outline(self) -> Floats:
         """The sheet's corners (5, 2), u and line, the first again at the end."""
         corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
-        return self.board.position(corners * SHEET_M)
+        return self.board.position(corners * self.sheet_m)
 
 
 def scan_examples(calibration: Calibration, table: str) -> list[ScanExample]:
@@ -53,13 +59,15 @@ def scan_examples(calibration: Calibration, table: str) -> list[ScanExample]:
         calibration.results.table(table, SCAN_POINTS), ("observation", "point", "u_px", "line"), f"{table}.parquet"
     )
     views = {number: points[points["observation"] == number] for number in calibration.inliers}
-    boards = {number: board_of(view) for number, view in views.items() if len(view) >= _FEWEST_POINTS}
+    target = calibration.platform_file.target
+    found = {number: board_of(view, target) for number, view in views.items()}
+    boards = {number: board for number, board in found.items() if board is not None}
     if not boards:
-        expected = f"an accepted observation with {_FEWEST_POINTS} points"
+        expected = f"an accepted observation with {_FEWEST_POINTS} points of the target"
         raise InputError(f"{table}.parquet", "none", expected, "label more points")
     paths = select_scans(folder, source.scans, source.left_out)
     return [
-        ScanExample(title, _intensity(paths[number]), views[number], boards[number])
+        ScanExample(title, _intensity(paths[number]), views[number], boards[number], sheet_of(target))
         for number, title in chosen(boards).items()
     ]
 
@@ -70,10 +78,20 @@ def _intensity(path: Path) -> Intensity:
     return read_intensity(path)
 
 
-def board_of(view: pd.DataFrame) -> BoardInScan:
-    """Where the board lies in a scan, from one observation's points."""
-    known = view[view["point"].isin(range(len(board_points())))]
-    return fit_board(board_points()[known["point"], :2], known[["u_px", "line"]].to_numpy())
+def board_of(view: pd.DataFrame, target: Target) -> BoardInScan | None:
+    """Where the target lies in a scan, from one observation's points; None where too few of them are the target's."""
+    place = {name: index for index, name in enumerate(target.ids())} if target.artwork() else {}
+    known = view[view["point"].isin(list(place))]
+    if len(known) < _FEWEST_POINTS:
+        return None
+    board_m = target.points()[[place[name] for name in known["point"]], :2]
+    return fit_board(board_m, known[["u_px", "line"]].to_numpy())
+
+
+def sheet_of(target: Target) -> tuple[float, float]:
+    """The size of a target's sheet along x and y: of the paper's board A1, of others what is printed."""
+    artwork = target.artwork()
+    return SHEET_M if artwork is None or target == RingsSection() else (artwork.width_m, artwork.height_m)
 
 
 def chosen(boards: Mapping[int, BoardInScan]) -> dict[int, str]:

@@ -13,6 +13,8 @@ from linepose.output.figures.scan import (
 )
 from linepose.output.figures.scan_example import ScanExample, board_of, chosen
 from linepose.survey.pattern import board_points
+from linepose.survey.targets.points import PointsSection
+from linepose.survey.targets.rings import RingsSection
 
 BOARD_M = board_points()[:, :2]
 RNG = np.random.default_rng(2)
@@ -26,7 +28,7 @@ def points_at(matrix, offset):
 
 def example(title="Observation 3\nslow", matrix=((60, 0), (0, 120)), offset=(50, 90), shape=(200, 100)):
     points = points_at(matrix, offset)
-    return ScanExample(title, RNG.random(shape, dtype=np.float32), points, board_of(points))
+    return ScanExample(title, RNG.random(shape, dtype=np.float32), points, board_of(points, RingsSection()))
 
 
 def test_sheet_is_framed_where_its_points_have_it():
@@ -98,3 +100,9 @@ def test_quick_mirrored_and_slow_examples_are_chosen():
 
 def test_passes_alike_leave_one_example():
     assert chosen(boards(o3=((300, 0), (0, -310)), o9=((300, 0), (0, -300)))) == {9: "Observation 9\nmirrored"}
+
+
+def test_points_that_are_not_the_targets_have_no_board():
+    view = pd.DataFrame({"point": [f"stone {k}" for k in range(8)], "u_px": np.arange(8.0), "line": np.arange(8.0)})
+    assert board_of(view, RingsSection()) is None
+    assert board_of(view, PointsSection()) is None
