@@ -1,0 +1,86 @@
+"""Exports in other tools' words: each tool's documented equations take a pixel to the same ground point."""
+
+from xml.etree import ElementTree
+
+import cv2
+import numpy as np
+import pytest
+import yaml
+from scipy.spatial.transform import Rotation
+
+from linepose.errors import InputError
+from linepose.geometry.camera import rays
+from linepose.output.exports.gref4hsi import line_camera
+from linepose.pipeline.calibration import Calibration
+from unit import made_up
+
+BODY = Rotation.from_euler("ZYX", [40.0, -3.0, 5.0], degrees=True).as_matrix()
+BODY_POSITION_M = np.array([10.0, -4.0, -1.5])
+PIXELS = np.array([0, 100, 323, 647])
+MILLIMETRE = 1e-3
+
+
+def ground(centre, direction):
+    """Where rays meet the plane two metres below the world's origin."""
+    return centre + direction * ((2.0 - centre[2]) / direction[:, 2])[:, None]
+
+
+def platform(**distortion):
+    return made_up.platform(camera=made_up.PLATFORM["camera"] | distortion)
+
+
+def ours(camera, matrix):
+    centre, direction = rays(camera, matrix[:3, :3], matrix[:3, 3], BODY, BODY_POSITION_M, PIXELS)
+    return ground(centre, direction)
+
+
+def exported(results, chosen, name, folder):
+    return Calibration.from_results(results / "made-up", chosen).export(name, folder / name)
+
+
+@pytest.mark.parametrize("distortion", [{}, {"k1": -0.08, "k2": 0.02}])
+def test_gref4hsi_lands_on_the_same_ground(made, results, tmp_path, distortion):
+    chosen = platform(**distortion)
+    root = ElementTree.parse(exported(results, chosen, "gref4hsi", tmp_path)).getroot()
+    read = {element.tag: float(element.text) for element in root if isinstance(element.tag, str)}
+    assert read["width"] == 648
+    distance = np.arange(0, read["width"])[PIXELS] + 0.5 - read["cx"]
+    polynomial = read["k1"] * distance**5 + read["k2"] * distance**3 + read["k3"] * distance**2
+    x = distance / read["f"] - polynomial / read["f"]
+    turn = Rotation.from_euler("ZYX", [read["rz"], read["ry"], read["rx"]]).as_matrix()
+    direction = np.stack([x, 0 * x, 0 * x + 1], axis=1) @ turn.T @ BODY.T
+    centre = BODY_POSITION_M + BODY @ [read["tx"], read["ty"], read["tz"]]
+    np.testing.assert_allclose(ground(centre, direction), ours(chosen.camera, made.matrix), atol=MILLIMETRE)
+
+
+def test_gref4hsi_refuses_what_its_reader_cannot_have(made, tmp_path):
+    with pytest.raises(InputError, match="frd"):
+        made.export("gref4hsi", tmp_path / "x.xml", body_axes="flu")
+    with pytest.raises(InputError, match="miss by"):
+        line_camera(platform(k1=40.0, k2=-900.0).camera, "made-up")
+
+
+@pytest.mark.parametrize("distortion", [{}, {"k1": -0.08, "k2": 0.02}])
+def test_camera_info_lands_on_the_same_ground(made, results, tmp_path, distortion):
+    chosen = platform(**distortion)
+    read = yaml.safe_load(exported(results, chosen, "camera_info", tmp_path).read_text())
+
+    def array(key):
+        return np.array(read[key]["data"]).reshape(read[key]["rows"], read[key]["cols"])
+
+    assert (read["image_width"], read["image_height"]) == (648, 1)
+    assert read["distortion_model"] == "plumb_bob"
+    seen = np.stack([PIXELS, 0 * PIXELS], axis=1).astype(float)[:, None]
+    criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-12)
+    ideal = cv2.undistortPoints(
+        seen,
+        array("camera_matrix"),
+        array("distortion_coefficients"),
+        R=array("rectification_matrix"),
+        P=array("projection_matrix"),
+        criteria=criteria,
+    )[:, 0]
+    in_camera = np.column_stack([ideal, np.ones(len(ideal))]) @ np.linalg.inv(array("projection_matrix")[:, :3]).T
+    direction = in_camera @ made.matrix[:3, :3].T @ BODY.T
+    centre = BODY_POSITION_M + BODY @ made.matrix[:3, 3]
+    np.testing.assert_allclose(ground(centre, direction), ours(chosen.camera, made.matrix), atol=MILLIMETRE)
