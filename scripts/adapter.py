@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from linepose.errors import LineposeError
+from linepose.errors import one_line
 from linepose.pipeline.parent_process import SNAKEMAKE, exit_with_process
 from linepose.pipeline.provenance import FOR_THE_ORDER_ALONE, Provenance, provenance_of_job
 from linepose.pipeline.run_lock import hold_job_lock
@@ -47,11 +47,12 @@ def stage(job: Any) -> Iterator[logging.Logger]:
         mark_tables(_provenance(job).text())
     try:
         yield log
-    except LineposeError as error:
-        log.error("%s", error)
-        sys.exit(1)
-    except Exception:
-        log.exception("unforeseen fault: please report it with this log")
+    except Exception as error:
+        told = one_line(error)
+        if told is None:
+            log.exception("unforeseen fault: please report it with this log")
+        else:
+            log.error("%s", told)
         sys.exit(1)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.config.platform import read_yaml
+    from linepose.config.yaml_file import read_yaml
     from linepose.experiments.repeatability import REPEATABILITY
     from linepose.experiments.subsets import SUBSETS
     from linepose.paper.declarations import load_declarations

@@ -5,7 +5,7 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.config.platform import read_yaml
+    from linepose.config.yaml_file import read_yaml
     from linepose.paper.declarations import load_declarations
     from linepose.paper.number_sets import NUMBER_SETS
     from linepose.paper.regression import REGRESSION, obtained_numbers, regression_table

@@ -1,5 +1,18 @@
 """Errors that a user can act on: one line that says where, what was found, what was expected, what to do."""
 
+import errno
+import os
+from typing import Final
+
+_OF_THE_SYSTEM: Final = {
+    errno.ENOSPC: "make room on it",
+    errno.EDQUOT: "make room within the quota",
+    errno.EROFS: "work on one that can be written",
+    errno.EACCES: "get the right to read and write there",
+    errno.EPERM: "get the right to read and write there",
+}
+_MOST_CHARACTERS: Final = 600  # of each part of a message: what a file holds may be a million
+
 
 class LineposeError(Exception):
     """Base of every error that linepose raises for its user; `str(error)` is one line.
@@ -35,11 +48,9 @@ class InputError(LineposeError):
     """
 
     def __init__(self, place: str, found: str, expected: str, remedy: str) -> None:
-        self.place = place
-        self.found = found
-        self.expected = expected
-        self.remedy = remedy
-        super().__init__(f"{place}: found {found}, expected {expected}; {remedy}")
+        self.place, self.found = printable(place), printable(found)
+        self.expected, self.remedy = printable(expected), printable(remedy)
+        super().__init__(f"{self.place}: found {self.found}, expected {self.expected}; {self.remedy}")
 
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, str, str, str]]:
         return (type(self), (self.place, self.found, self.expected, self.remedy))
@@ -54,6 +65,26 @@ class EstimationError(LineposeError):
     >>> issubclass(linepose.EstimationError, linepose.LineposeError)
     True
     """
+
+
+def one_line(error: BaseException) -> str | None:
+    """What a person is told of an error in one line; None of one that is a fault of the program."""
+    if isinstance(error, LineposeError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return "found too little memory, expected more; end other programs, or cut the recording into parts"
+    if isinstance(error, OSError) and error.errno in _OF_THE_SYSTEM:
+        place = f"{error.filename}: " if error.filename else ""
+        found, remedy = os.strerror(error.errno).lower(), _OF_THE_SYSTEM[error.errno]
+        return f"{place}found {found}, expected a disk to write to; {remedy}"
+    return None
+
+
+def printable(text: str) -> str:
+    """A text as a terminal may show it: on one line, control signs escaped, its middle left out where it is long."""
+    if len(text) > _MOST_CHARACTERS:
+        text = f"{text[: _MOST_CHARACTERS // 2]} ... {text[-_MOST_CHARACTERS // 2 :]}"
+    return "".join(one if one.isprintable() else one.encode("unicode_escape").decode("ascii") for one in text)
 
 
 def quoted(value: object) -> str:

@@ -7,9 +7,10 @@ that each default stands once.
 import difflib
 import inspect
 import re
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Self, TypeVar, get_args
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, ErrorDetails
@@ -42,6 +43,15 @@ class Settings(BaseModel, metaclass=_FaultsInOneLine):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _numbers_are_numbers(cls, values: Any) -> Any:
+        """Yes and no are no numbers, nor are digits with signs: pydantic takes `yes` for 1.0 and "1_00" for 100."""
+        if not isinstance(values, Mapping):
+            return values
+        numeric = {name for name, field in cls.model_fields.items() if _is_numeric(field)}
+        return {name: _without_others(value) if name in numeric else value for name, value in values.items()}
+
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Tell the keys in the docstring, as numpydoc has it, in the words of the configuration's reference."""
@@ -62,6 +72,37 @@ class Settings(BaseModel, metaclass=_FaultsInOneLine):
     def replaced(self, **changes: Any) -> Self:
         """These settings with other values of some keys, checked like those given first; raises InputError."""
         return type(self)(**{name: getattr(self, name) for name in type(self).model_fields} | changes)
+
+
+def _scalars(annotation: Any) -> set[Any]:
+    """The plain types that an annotation is made of."""
+    inner = [one for one in get_args(annotation) if one is not Ellipsis]
+    return set().union(*(_scalars(one) for one in inner)) if inner else {annotation}
+
+
+def _is_numeric(field: FieldInfo) -> bool:
+    """Whether a key takes numbers, and nothing that yes, no or text may stand for."""
+    kinds = _scalars(field.annotation)
+    return bool(kinds & {int, float}) and not kinds & {bool, str, Any, object}
+
+
+class _NoNumber:
+    """What stands where a number is expected, as no type that pydantic makes a number of."""
+
+    def __init__(self, value: bool | str) -> None:
+        self.value = value
+
+    def __repr__(self) -> str:
+        return repr(self.value)
+
+
+def _without_others(value: Any) -> Any:
+    """A value with what is no number marked as such, also within lists; `1e-4`, to YAML a text, is one."""
+    if isinstance(value, list | tuple):
+        return [_without_others(one) for one in value]
+    if isinstance(value, bool) or (isinstance(value, str) and ("_" in value or not value.isascii())):
+        return _NoNumber(value)
+    return value
 
 
 def _kind_of(field: FieldInfo) -> str:

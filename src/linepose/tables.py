@@ -1,5 +1,6 @@
 """Results on disk: Parquet with a fixed schema, whole or not at all, the same bytes for the same values."""
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -13,6 +14,8 @@ import pyarrow.parquet as pq
 
 from linepose.errors import InputError
 
+FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+UNWRITABLE: Final = FULL | {errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.ENAMETOOLONG, errno.EISDIR}
 _MARK: Final = b"linepose"
 _NAMES: Final = {b"names": b"of points"}
 _marks: dict[bytes, bytes] = {}
@@ -34,18 +37,43 @@ def read_mark(path: Path | str) -> str | None:
 
 @contextmanager
 def atomic_write(path: Path | str) -> Iterator[Path]:
-    """A temporary path beside `path` that takes its place when the block ends well, and vanishes otherwise."""
-    target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
-    os.close(handle)
-    temporary = Path(name)
+    """A temporary path beside `path` that takes its place when the block ends well, and vanishes otherwise.
+
+    A link stays, and what it leads to is replaced. Raises InputError for a device or folder, and for a full disk.
+    """
+    target = _followed(Path(path))
+    temporary = None
     try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem[:40]}-", suffix=target.suffix)
+        os.close(handle)
+        temporary = Path(name)
         yield temporary
         temporary.chmod(0o644)
         temporary.replace(target)
+    except OSError as error:
+        raise _unwritten(path, error) from None
     finally:
-        temporary.unlink(missing_ok=True)
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+
+
+def _followed(path: Path) -> Path:
+    """Where a file is to be written: of a link the file that it leads to; raises InputError for what is no file."""
+    target = path.resolve() if path.is_symlink() else path
+    if target.exists() and not target.is_file():
+        kind = "a folder" if target.is_dir() else "a device or pipe"
+        raise InputError(str(path), kind, "a file, or a name that is free", "give another name")
+    return target
+
+
+def _unwritten(path: Path | str, error: OSError) -> Exception:
+    """The user's fault that kept a file from being written; any other error as it is."""
+    if error.errno not in UNWRITABLE:
+        return error
+    remedy = "make room there" if error.errno in FULL else "give another place, or the right to write there"
+    told = os.strerror(error.errno or 0).lower()
+    return InputError(str(path), f"{told} while it was written", "a place that can be written", remedy)
 
 
 def write_table(table: pd.DataFrame, path: Path | str, schema: pa.Schema) -> None:
@@ -62,7 +90,8 @@ def write_table(table: pd.DataFrame, path: Path | str, schema: pa.Schema) -> Non
     if unknown:
         raise InputError(str(path), f"columns {sorted(unknown)}", f"columns {schema.names}", "mend the result")
     with atomic_write(path) as temporary:
-        pq.write_table(arrow.replace_schema_metadata(dict(_marks) or None), temporary, compression="zstd")
+        marked = arrow.replace_schema_metadata(dict(_marks) or None)
+        pq.write_table(marked, temporary, compression="zstd", write_page_checksum=True)
 
 
 def read_table(path: Path | str, schema: pa.Schema | None = None) -> pd.DataFrame:
@@ -70,13 +99,29 @@ def read_table(path: Path | str, schema: pa.Schema | None = None) -> pd.DataFram
     if not Path(path).is_file():
         raise InputError(str(path), "no such file", "a result of an earlier stage", "run that stage first")
     try:
-        arrow = pq.read_table(path)
-    except pa.ArrowException as error:
-        raise InputError(str(path), str(error).splitlines()[0], "a Parquet file", "delete it and run again") from None
+        arrow = read_parquet(Path(path))
+    except InputError as error:
+        raise InputError(str(path), error.found, "a Parquet file", "delete it and run again") from None
     missing = [name for name in schema.names if name not in arrow.column_names] if schema else []
     if missing:
         raise InputError(str(path), f"no column {', '.join(missing)}", "the stage's schema", "delete it and run again")
+    wrong = [one.name for one in schema or () if arrow.schema.field(one.name).type != one.type]
+    if wrong:
+        raise InputError(
+            str(path), f"column {wrong[0]} of another type", "the stage's schema", "delete it and run again"
+        )
     return arrow.to_pandas()
+
+
+def read_parquet(path: Path) -> pa.Table:
+    """A Parquet file whose pages agree with their check sums; raises InputError for one that is broken."""
+    try:
+        table = pq.read_table(path, page_checksum_verification=True)
+        table.validate(full=True)
+    except (pa.ArrowException, OSError, ValueError, UnicodeError) as error:
+        found = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(str(path), found, "a Parquet file", "restore it") from None
+    return table
 
 
 def write_csv(table: pd.DataFrame, path: Path | str) -> None:

@@ -1,9 +1,10 @@
+import errno
 import pickle
 
 import numpy as np
 import pytest
 
-from linepose.errors import EstimationError, InputError, LineposeError, quoted
+from linepose.errors import EstimationError, InputError, LineposeError, one_line, quoted
 
 
 def test_message_is_one_line_of_place_found_expected_remedy():
@@ -25,3 +26,24 @@ def test_one_base_catches_both():
 @pytest.mark.parametrize(("value", "told"), [("x", "'x'"), (np.float64(0.1), "0.1"), (np.int64(3), "3"), ([1], "[1]")])
 def test_a_value_is_quoted_as_python_writes_it(value, told):
     assert quoted(value) == told
+
+
+def test_what_a_file_holds_never_reaches_the_terminal_as_it_is():
+    error = InputError("a\nb.csv", "\x1b[31mred\x00", "x" * 10_000, "mend it")
+    assert str(error).isprintable()
+    assert r"\x1b[31mred\x00" in str(error)
+    assert len(str(error)) < 800
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (OSError(errno.ENOSPC, "No space left on device", "results/a"), "results/a: found no space left on device"),
+        (MemoryError(), "too little memory"),
+        (KeyError("x"), None),
+        (FileNotFoundError(errno.ENOENT, "no", "x"), None),
+    ],
+)
+def test_faults_of_the_machine_are_one_line_those_of_the_program_none(error, told):
+    line = one_line(error)
+    assert (line is None) if told is None else (told in line)

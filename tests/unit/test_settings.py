@@ -6,6 +6,7 @@ from pydantic import Field, PositiveInt
 
 import linepose
 from linepose.errors import InputError
+from linepose.estimation.sampling import SamplingSettings
 from linepose.settings import Settings, validated
 
 
@@ -156,3 +157,15 @@ def test_example_of_the_docstring_runs(name):
     doctest.DocTestRunner(verbose=False).run(example, out=told.append)
     assert example.examples
     assert told == []
+
+
+@pytest.mark.parametrize("value", [True, "1_00", "٣"])
+def test_what_is_no_number_to_people_is_none(value):
+    with pytest.raises(InputError, match="n_walkers"):
+        SamplingSettings(n_walkers=value)
+
+
+@pytest.mark.parametrize("keys", [{"n_walkers": 10**9}, {"n_steps": 10**12}, {"n_walkers": 10_000, "n_steps": 10_000}])
+def test_counts_that_no_memory_holds_are_refused(keys):
+    with pytest.raises(InputError):
+        SamplingSettings(**keys)

@@ -1,3 +1,5 @@
+import errno
+import os
 import stat
 
 import numpy as np
@@ -7,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from linepose.errors import InputError
-from linepose.tables import atomic_write, point_column, read_table, write_csv, write_table
+from linepose.tables import atomic_write, floats, point_column, read_table, write_csv, write_table
 
 SCHEMA = pa.schema([pa.field("point", pa.int64(), nullable=False), pa.field("u_px", pa.float64(), nullable=False)])
 TABLE = pd.DataFrame({"u_px": [0.1, np.inf, -3.0], "point": [0, 1, 2]})
@@ -161,3 +163,42 @@ def test_table_of_another_stage(tmp_path):
 def test_csv_has_ten_digits_and_the_same_bytes_everywhere(tmp_path):
     write_csv(pd.DataFrame({"name": ["a, b"], "value": [np.pi * 1e6]}, index=[5]), tmp_path / "t.csv")
     assert (tmp_path / "t.csv").read_bytes() == b'name,value\n"a, b",3141592.654\n'
+
+
+def test_a_flipped_byte_never_gives_another_table(tmp_path):
+    """Every byte of the pages is under a check sum; the rest does not change the numbers."""
+    schema = pa.schema(floats("x"))
+    write_table(pd.DataFrame({"x": np.arange(40.0) ** 1.5}), tmp_path / "t.parquet", schema)
+    whole, data = read_table(tmp_path / "t.parquet", schema), (tmp_path / "t.parquet").read_bytes()
+    refused = 0
+    for place in range(0, len(data), 11):
+        (tmp_path / "u.parquet").write_bytes(data[:place] + bytes([data[place] ^ 4]) + data[place + 1 :])
+        try:
+            assert read_table(tmp_path / "u.parquet", schema).equals(whole), place
+        except InputError:
+            refused += 1
+    assert refused > 15
+
+
+def test_a_link_stays_and_what_it_leads_to_is_written(tmp_path):
+    (tmp_path / "there").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "there" / "file.csv")
+    with atomic_write(tmp_path / "link") as path:
+        path.write_text("new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "there" / "file.csv").read_text() == "new"
+
+
+def test_a_device_is_never_replaced(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="a device or pipe"), atomic_write(tmp_path / "pipe"):
+        pass
+    with pytest.raises(InputError, match="a folder"), atomic_write(tmp_path):
+        pass
+
+
+def test_a_full_disk_is_one_line_and_leaves_nothing(tmp_path):
+    told = "no space left on device while it was written"
+    with pytest.raises(InputError, match=told), atomic_write(tmp_path / "a.csv"):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert list(tmp_path.iterdir()) == []

@@ -3,7 +3,7 @@
 from typing import Final
 
 import numpy as np
-from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
+from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from linepose.adjustment.hand_measured import covariance_of_sigmas
 from linepose.adjustment.levels import START, LevelPriors, Levels
@@ -32,9 +32,9 @@ class AdjustmentSection(Settings):
     tails: bool = Field(
         True, description="Whether views and single measurements may err far more than the rest, where the data say so."
     )
-    n_draws: int = Field(200, ge=10, description="Draws of the levels.")
-    n_samples: PositiveInt = Field(2000, description="Draws of the pose.")
-    max_rounds: PositiveInt = Field(12, description="Rounds of Gauss-Newton and levels in turn.")
+    n_draws: int = Field(200, ge=10, le=100_000, description="Draws of the levels.")
+    n_samples: int = Field(2000, ge=1, le=10_000_000, description="Draws of the pose.")
+    max_rounds: int = Field(12, ge=1, le=10_000, description="Rounds of Gauss-Newton and levels in turn.")
 
 
 class AdjustmentSettings(AdjustmentSection):

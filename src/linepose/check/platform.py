@@ -24,9 +24,10 @@ from linepose.check.prediction import predict
 from linepose.check.scans import scan_findings
 from linepose.check.told import readers_warnings
 from linepose.check.views import view_findings
-from linepose.config.platform import Platform, load_platform, platform_faults, read_yaml
+from linepose.config.platform import Platform, load_platform, platform_faults
 from linepose.config.project import Project
 from linepose.config.study import check_study
+from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError, LineposeError
 from linepose.experiments.registry import compared_platforms, experiment_faults
 from linepose.geometry.pose import N_PARAMETERS

@@ -12,6 +12,7 @@ from linepose.check.labels import pose_findings, repeated_findings, sensor_findi
 from linepose.errors import InputError
 from linepose.inputs.labels.labelled_views import read_labelled_views, select_views
 from linepose.inputs.number_files import check_microseconds, read_named_numbers
+from linepose.inputs.patterns import matching
 from linepose.inputs.source import LabelledViewsSection
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 
@@ -25,7 +26,7 @@ def view_findings(
     """Findings on a platform's view files, and its points (`POINTS`) where they can be used."""
     paths = select_views(folder, source.views, source.first, source.step)
     if not paths:
-        total = len(list(folder.glob(source.views)))
+        total = len(matching(folder, source.views))
         found = f"no view file {folder / source.views}" + (f" of {total} from number {source.first}" if total else "")
         advice = (
             "correct source.views, first and step" if total else "put the view files there, or correct source.views"

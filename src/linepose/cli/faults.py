@@ -5,7 +5,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from linepose.errors import LineposeError
+from linepose.errors import LineposeError, one_line
 
 
 class OneLineFaults(TyperGroup):
@@ -15,6 +15,9 @@ class OneLineFaults(TyperGroup):
         """Run the command; a fault is printed as it is, on one line."""
         try:
             return super().invoke(ctx)
-        except LineposeError as error:
-            typer.echo(f"linepose: {error}", err=True)
+        except (LineposeError, OSError, MemoryError) as error:
+            told = one_line(error)
+            if told is None:
+                raise
+            typer.echo(f"linepose: {told}", err=True)
             raise typer.Exit(1) from None

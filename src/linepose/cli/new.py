@@ -66,7 +66,8 @@ def new(
 
     Asks for what the options leave out. In a folder without a project, a minimal one is made.
     """
-    from linepose.config.new_platform import NewPlatform, check_name, files_of_source, write_platform
+    from linepose.config.names import check_name
+    from linepose.config.new_platform import NewPlatform, files_of_source, write_platform
     from linepose.config.platform import load_platform
 
     check_name(name)
@@ -145,7 +146,7 @@ def _recognised(path: Path, chosen: str | None) -> tuple[str, dict[str, Any]]:
 
 def _places(project: Path) -> tuple[Path, Path]:
     """The project's folder, or where one will be made, and its folder of platform files."""
-    from linepose.config.platform import read_yaml
+    from linepose.config.yaml_file import read_yaml
     from linepose.errors import InputError
     from linepose.pipeline.project_folder import CONFIG, find_project
 

@@ -35,7 +35,7 @@ class CoverageSection(Settings):
     """Simulated surveys with a known truth: how often the stated regions hold it (snakemake coverage)."""
 
     platforms: list[str] = Field([], description="Simulated platforms among the study's; all of these if empty.")
-    n_surveys: PositiveInt = Field(200, description="Surveys of each platform and regime.")
+    n_surveys: int = Field(200, gt=0, le=1_000_000, description="Surveys of each platform and regime.")
     seed: NonNegativeInt = Field(7, description="Seed of the study's surveys.")
     batch_size: PositiveInt = Field(10, description="Surveys between two savings; no result depends on it.")
     regimes: dict[RegimeName, RegimeSection] = Field(

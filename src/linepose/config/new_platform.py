@@ -1,13 +1,13 @@
 """A new platform's file, written for a person to read on: every key with its unit, values from data sheet and tape."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final, Literal, get_args, get_origin
+from typing import Any, Literal, get_args, get_origin
 
 import yaml
 
+from linepose.config.names import check_name
 from linepose.config.platform import NavigationSection, Platform
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT
@@ -20,7 +20,6 @@ from linepose.survey.hand_measured import HandMeasured
 from linepose.tables import atomic_write
 
 Triple = tuple[float, float, float]
-_NAME: Final = re.compile(r"[A-Za-z0-9_-]+")
 
 
 @dataclass(frozen=True)
@@ -46,13 +45,6 @@ class NewPlatform:
     navigation_format: str = ""
     navigation: str = ""
     navigation_keys: Mapping[str, Any] = field(default_factory=dict)
-
-
-def check_name(name: str) -> str:
-    """The name of a platform; raises InputError for one that no file or rule can have."""
-    if not _NAME.fullmatch(name):
-        raise InputError("platform's name", repr(name), "letters, digits, - and _", "choose such a name")
-    return name
 
 
 def platform_text(new: NewPlatform) -> str:

@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import yaml
 from pydantic import (
     BeforeValidator,
     Field,
@@ -18,8 +17,10 @@ from pydantic import (
 
 from linepose.arrays import Floats
 from linepose.config.map_frame import MapFrameSection
+from linepose.config.names import check_name
 from linepose.config.outline import OutlineSection
 from linepose.config.points import PointsSection
+from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, noise_model
 from linepose.geometry.camera import Camera
@@ -167,6 +168,7 @@ def platform_faults(folder: Path, name: str) -> list[InputError]:
 
 
 def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:
+    check_name(name, f"{folder / seen[-1]}.yaml: like" if seen else "platform's name")
     path = folder / f"{name}.yaml"
     if name in seen:
         raise InputError(f"{path}: like", f"a circle {' -> '.join([*seen, name])}", "an end", "remove one `like`")
@@ -193,19 +195,3 @@ def _overlaid(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
         both = isinstance(value, dict) and isinstance(below.get(key), dict)
         merged[key] = _overlaid(below[key], value) if both else value
     return merged
-
-
-def read_yaml(path: Path) -> dict[str, Any]:
-    """A YAML file's mapping; raises InputError for a file that is missing, broken, or holds something else."""
-    if not path.is_file():
-        near = sorted(p.stem for p in path.parent.glob("*.yaml"))
-        raise InputError(
-            str(path), "no such file", f"one of {', '.join(near) or 'none'}", "create it or correct the name"
-        )
-    try:
-        values = yaml.safe_load(path.read_bytes())
-    except yaml.YAMLError as error:
-        raise InputError(str(path), " ".join(str(error).split()), "YAML", "correct the file") from None
-    if not isinstance(values, dict):
-        raise InputError(str(path), type(values).__name__, "keys and values", "write `key: value` lines")
-    return values

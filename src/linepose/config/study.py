@@ -1,13 +1,14 @@
 """The study's configuration: which platforms, where their data are, and the settings of every stage."""
 
-from pathlib import Path
+import re
+from pathlib import Path, PurePosixPath
 from typing import Any
 
-from pydantic import Field, NonNegativeInt
+from pydantic import Field, NonNegativeInt, field_validator
 
 from linepose.adjustment.settings import AdjustmentSection
 from linepose.config.coverage import CoverageSection
-from linepose.config.platform import read_yaml
+from linepose.config.yaml_file import read_yaml
 from linepose.estimation.optimise import Search
 from linepose.estimation.outliers import OutlierSettings
 from linepose.estimation.sampling import SamplingSettings
@@ -20,6 +21,17 @@ class DatasetSection(Settings):
     base_url: str = Field(description="Address below which the files stand.")
     sha256: dict[str, str] = Field(description="SHA-256 of each file, by its path in the data set.")
     urls: dict[str, str] = Field(default_factory=dict, description="Addresses of files that stand elsewhere.")
+
+    @field_validator("sha256")
+    @classmethod
+    def _are_below_the_folder(cls, sums: dict[str, str]) -> dict[str, str]:
+        for file, found in sums.items():
+            path = PurePosixPath(file)
+            if path.is_absolute() or ".." in path.parts or not path.parts or "\\" in file or not file.isprintable():
+                raise ValueError(f"paths below the data set's folder, not {file!r}")
+            if not re.fullmatch("[0-9a-fA-F]{64}", found):
+                raise ValueError(f"64 hexadecimal digits for {file}, not {found!r}")
+        return sums
 
 
 class Study(Settings):

@@ -1,11 +1,11 @@
 """Samples of a likelihood's posterior: emcee's ensemble, moved as in the paper."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field, NonNegativeInt, PositiveFloat
+from pydantic import Field, PositiveFloat, model_validator
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
@@ -15,6 +15,11 @@ if TYPE_CHECKING:  # configuration has these settings and must be read quickly: 
     import emcee
 
     from linepose.likelihood.base import Likelihood
+
+
+MOST_WALKERS: Final = 10_000
+MOST_STEPS: Final = 1_000_000
+_MOST_SAMPLES: Final = 10_000_000  # kept and thrown away: less than 1 GB
 
 
 class SamplingSettings(Settings):
@@ -27,12 +32,19 @@ class SamplingSettings(Settings):
     250
     """
 
-    n_walkers: int = Field(250, ge=4, description="Walkers of the ensemble.")
-    n_burn_in: NonNegativeInt = Field(100, description="Steps thrown away.")
-    n_steps: int = Field(100, ge=4, description="Steps kept.")
+    n_walkers: int = Field(250, ge=4, le=MOST_WALKERS, description="Walkers of the ensemble.")
+    n_burn_in: int = Field(100, ge=0, le=MOST_STEPS, description="Steps thrown away.")
+    n_steps: int = Field(100, ge=4, le=MOST_STEPS, description="Steps kept.")
     stretch_scale: float = Field(2.5, gt=1, description="Scale a of the stretch move.")
     start_sigma_m: PositiveFloat = Field(0.1, description="Walkers start around the optimum with this sigma (m).")
     start_sigma_rad: PositiveFloat = Field(0.01, description="The same for the rotation vector (rad).")
+
+    @model_validator(mode="after")
+    def _fits_into_memory(self) -> Self:
+        samples = self.n_walkers * max(self.n_steps, self.n_burn_in)
+        if samples > _MOST_SAMPLES:
+            raise ValueError(f"at most {_MOST_SAMPLES} samples, n_walkers times n_steps, not {samples}")
+        return self
 
 
 @dataclass(frozen=True)

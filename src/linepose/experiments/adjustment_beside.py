@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
-from pydantic import Field, NonNegativeInt, PositiveInt
+from pydantic import Field, PositiveInt
 
 from linepose.adjustment.levels import LEVEL_NAMES
 from linepose.adjustment.reprojection import reprojection
@@ -53,7 +53,7 @@ class AdjustmentBesideSettings(Settings):
         description="Platform files of the same camera with other data choices (covariance columns, views), which are "
         "adjusted too; they are run as far as the outlier removal.",
     )
-    n_splits: NonNegativeInt = Field(30, description="Random halves of each set of observations.")
+    n_splits: int = Field(30, ge=0, le=1_000_000, description="Random halves of each set of observations.")
     batch_size: PositiveInt = Field(10, description="Splits between two savings; no result depends on it.")
 
 

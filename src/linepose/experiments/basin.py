@@ -59,8 +59,8 @@ class BasinSettings(Settings):
 
     maximum_distance_m: PositiveFloat = Field(2.0, description="The grid reaches this far from the optimum (m).")
     maximum_angle_deg: float = Field(60.0, gt=0, le=180, description="The grid reaches this angle from it (deg).")
-    n_distances: PositiveInt = Field(30, description="Cells over the distance.")
-    n_angles: PositiveInt = Field(30, description="Cells over the angle.")
+    n_distances: int = Field(30, gt=0, le=1_000, description="Cells over the distance.")
+    n_angles: int = Field(30, gt=0, le=1_000, description="Cells over the angle.")
     optimisers: list[OptimiserName] = Field(
         [],
         description="Searches to compare on the same starts; the noise model's usual ones if empty. Of the adjustment: "

@@ -10,7 +10,7 @@ from typing import Final, Self
 import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
-from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
+from pydantic import Field, PositiveInt, model_validator
 
 from linepose.errors import InputError
 from linepose.estimation.estimator import Estimator
@@ -33,7 +33,7 @@ class RepeatabilitySettings(Settings):
 
     first: SubsetSettings | None = Field(None, description="The first of two disjoint subsets.")
     second: SubsetSettings | None = Field(None, description="The second one.")
-    n_splits: NonNegativeInt = Field(200, description="Random splits into two disjoint subsets.")
+    n_splits: int = Field(200, ge=0, le=1_000_000, description="Random splits into two disjoint subsets.")
     split_size: PositiveInt | None = Field(None, description="Observations in each; half of the accepted ones if null.")
 
     @model_validator(mode="after")

@@ -6,7 +6,7 @@ image plane lies at z = 1 in front of the camera, with x along the scan line. Ra
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt
+from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from linepose.arrays import Floats
 from linepose.settings import Settings
@@ -43,7 +43,7 @@ class Camera(Settings):
 
     focal_length_m: PositiveFloat = Field(description="Focal length (m).")
     pixel_pitch_m: PositiveFloat = Field(description="Width of a pixel on the sensor (m).")
-    n_pixels: PositiveInt = Field(description="Pixels of a scan line.")
+    n_pixels: int = Field(gt=0, le=1_000_000, description="Pixels of a scan line.")
     principal_point_px: float = Field(
         description="Where the optical axis meets the line (px from the centre of the first pixel)."
     )

@@ -22,6 +22,8 @@ TimeScale = Literal["gps", "unix"]
 GPS_EPOCH_US: Final = 315_964_800_000_000  # 1980-01-06 as Unix time
 WEEK_US: Final = 604_800_000_000
 _OLDEST_DEVICE_US: Final = 1_104_537_600_000_000  # 2005-01-01
+_MOST_WEEKS: Final = 10_000
+_FARTHEST_US: Final = 3.2e17  # ten thousand years: weeks and epochs added to it stay within 64 bits
 _UNIT_US: Final[dict[TimeUnit, float]] = {"s": 1e6, "ms": 1e3, "us": 1.0, "ns": 1e-3}
 
 log = logging.getLogger(__name__)
@@ -53,9 +55,18 @@ def leap_seconds() -> LeapSeconds:
     return LeapSeconds(start_us[since], np.cumsum(step_s[since]), expires)
 
 
-def microseconds(values: ArrayLike, unit: TimeUnit) -> NDArray[np.int64]:
-    """Numbers in this unit as whole microseconds, rounded to the nearest."""
+def microseconds(values: ArrayLike, unit: TimeUnit, place: str = "times") -> NDArray[np.int64]:
+    """Numbers in this unit as whole microseconds, rounded to the nearest.
+
+    Raises InputError naming the place and the record of what is no time between the years -10000 and 10000.
+    """
     numbers = np.asarray(values)
+    if numbers.dtype.kind not in "iuf":
+        numbers = numbers.astype(float)
+    beyond = ~(np.abs(numbers.astype(float)) * _UNIT_US[unit] <= _FARTHEST_US)
+    for row in np.flatnonzero(beyond)[:1]:
+        found, expected = f"the time {numbers.ravel()[row]:g} {unit}", "a time within ten thousand years of 1970"
+        raise InputError(f"{place}, record {row + 1}", found, expected, "mend or remove the record")
     if numbers.dtype.kind in "iu":  # whole numbers stay exact: nanoseconds since 1970 exceed what a double holds
         whole = numbers.astype(np.int64)
         return (whole + 500) // 1000 if unit == "ns" else whole * int(_UNIT_US[unit])
@@ -89,10 +100,17 @@ def gps_from_unix(unix_us: ArrayLike) -> NDArray[np.int64]:
     return np.asarray(unix - GPS_EPOCH_US + _total_s(leap_seconds().start_us, unix) * 1_000_000, dtype=np.int64)
 
 
-def unix_from_week(week: ArrayLike, seconds: ArrayLike) -> NDArray[np.int64]:
-    """Unix time (us) of GPS weeks (counted on from 1980, never from 0 again) and seconds of week; same shape."""
-    whole = np.asarray(week, dtype=np.int64) * WEEK_US
-    return unix_from_gps(whole + microseconds(np.asarray(seconds, dtype=float), "s"))
+def unix_from_week(week: ArrayLike, seconds: ArrayLike, place: str = "times") -> NDArray[np.int64]:
+    """Unix time (us) of GPS weeks (counted on from 1980, never from 0 again) and seconds of week; same shape.
+
+    Raises InputError naming the place and the record of a week that is none, as `microseconds` does of seconds.
+    """
+    weeks = np.asarray(week, dtype=float)
+    for row in np.flatnonzero(~((weeks >= 0) & (weeks < _MOST_WEEKS)))[:1]:
+        found, expected = f"GPS week {weeks.ravel()[row]:g}", f"0 to {_MOST_WEEKS}"
+        raise InputError(f"{place}, record {row + 1}", found, expected, "mend or remove the record")
+    whole = np.rint(weeks).astype(np.int64) * WEEK_US
+    return unix_from_gps(whole + microseconds(np.asarray(seconds, dtype=float), "s", place))
 
 
 def unix_from_week_of_first(week: int | None, of_week_us: NDArray[np.int64], place: str) -> NDArray[np.int64]:

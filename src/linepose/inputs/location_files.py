@@ -10,13 +10,14 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs import gps_time
 from linepose.inputs.gps_time import TimeScale
+from linepose.inputs.number_files import plain_float
 
 _FEWEST_COLUMNS: Final = 7
 
 
-def location_unix_us(time_s: Floats, time_scale: TimeScale) -> NDArray[np.int64]:
-    """Unix times (us) of the first column."""
-    time_us = gps_time.microseconds(time_s, "s")
+def location_unix_us(time_s: Floats, time_scale: TimeScale, path: Path) -> NDArray[np.int64]:
+    """Unix times (us) of the first column; raises InputError naming the file for what is no time."""
+    time_us = gps_time.microseconds(time_s, "s", str(path))
     return gps_time.unix_from_gps(time_us) if time_scale == "gps" else time_us
 
 
@@ -25,7 +26,7 @@ def location_rows(path: Path) -> Floats:
     rows: list[list[float]] = []
     for number, line in enumerate(_lines(path), start=1):
         try:
-            rows.append([float(word) for word in line.split()])
+            rows.append([plain_float(word) for word in line.split()])
         except ValueError:
             raise InputError(f"{path}, row {number}", repr(line[:60]), "numbers apart by spaces", "mend it") from None
         if len(rows[-1]) < _FEWEST_COLUMNS or len(rows[-1]) != len(rows[0]):

@@ -80,7 +80,7 @@ def _content(text: str) -> Any:
         return pynmea2.parse(f"${text}")
     except pynmea2.ChecksumError:
         raise ValueError("check sum") from None
-    except (pynmea2.ParseError, ValueError, TypeError, AttributeError):
+    except (pynmea2.ParseError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError):
         words = text.partition("*")[0].split(",")
         if re.fullmatch(r"[A-Z]{5,8}", words[0]) and words[0][2:] not in {"GGA", "RMC", "ZDA", "GST", "HDT"}:
             return None

@@ -1,5 +1,6 @@
 """Headerless CSV files of numbers, as the field data have them; a fault is named with its row."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,20 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 
 Whole = np.ndarray[tuple[int], np.dtype[np.int64]]
+
+
+def plain_float(text: str) -> float:
+    """The number that a text is, in digits of ASCII without `_`; raises ValueError for any other."""
+    if not text.isascii() or "_" in text:
+        raise ValueError(text)
+    return float(text)
+
+
+def plain_whole(text: str) -> int:
+    """The whole number of at most 18 digits that a text is, in digits of ASCII; raises ValueError for any other."""
+    if not re.fullmatch(r"\s*[+-]?\d{1,18}\s*", text, re.ASCII):
+        raise ValueError(text)
+    return int(text)
 
 
 def read_numbers(path: Path, n_columns: int, what: str) -> tuple[Whole, Floats]:
@@ -41,14 +56,14 @@ def _read(path: Path, n_columns: int, n_first: int, what: str) -> tuple[Whole, l
         if len(cells) != n_columns:
             raise InputError(place, f"{len(cells)} columns", f"{n_columns} columns ({what})", "mend the row")
         try:
-            first[index] = int(cells[0])
-        except (ValueError, OverflowError):
+            first[index] = plain_whole(cells[0])
+        except ValueError:
             remedy = "write the time as a whole number of microseconds"
             raise InputError(f"{place}, column 1", repr(cells[0]), "a whole number", remedy) from None
         second.append(cells[1].strip())
         for column, cell in enumerate(cells[n_first:]):
             try:
-                others[index, column] = float(cell) if cell.strip() else np.nan
+                others[index, column] = plain_float(cell) if cell.strip() else np.nan
             except ValueError:
                 where = f"{place}, column {column + n_first + 1}"
                 raise InputError(where, repr(cell), "a number", "mend the cell") from None

@@ -12,6 +12,7 @@ import pyarrow as pa
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.labels.labels import check_within
+from linepose.inputs.patterns import matching
 from linepose.inputs.scans.scan_files import LineTimes, Scan, read_scan
 from linepose.inputs.targets.detect import Detection, Detector
 from linepose.inputs.targets.refine import Refine, refine_points
@@ -28,7 +29,7 @@ log = logging.getLogger(__name__)
 
 def select_scans(folder: Path, pattern: str, left_out: Sequence[int]) -> dict[int, Path]:
     """Scan files by observation number: those of the folder in the order of their names, counted from 1."""
-    paths = sorted(folder.glob(pattern))
+    paths = matching(folder, pattern)
     if not paths:
         remedy = "correct source.scans, or put the scans there"
         raise InputError(str(folder / pattern), "no file", "one scan an observation", remedy)

@@ -10,6 +10,7 @@ from typing import Any, Literal
 from pydantic import Field, PositiveFloat, PositiveInt, field_validator, model_validator
 
 from linepose.inputs.navigation.registry import Navigation
+from linepose.inputs.patterns import Dataset, Files, matching
 from linepose.inputs.scans.envi_header import data_files
 from linepose.settings import Settings
 
@@ -18,25 +19,25 @@ class LabelledViewsSection(Settings):
     """Labelled points that already carry the body pose: CSV files, one a view of the pattern."""
 
     kind: Literal["labelled_views"] = Field(description="Points labelled by hand, one CSV file a view.")
-    dataset: str = Field(description="Data set, as named in the study's configuration.")
-    views: str = Field("labelled_points/*.csv", description="View files below the data set's folder, sorted by name.")
+    dataset: Dataset = Field(description="Data set, as named in the study's configuration.")
+    views: Files = Field("labelled_points/*.csv", description="View files below the data set's folder, sorted by name.")
     first: PositiveInt = Field(1, description="The first view file that is used (counted from 1).")
     step: PositiveInt = Field(1, description="Every how many-th view file is used.")
-    covariances: str = Field("nav_covs.csv", description="File of the navigation covariances: time (us), 12x12.")
+    covariances: Files = Field("nav_covs.csv", description="File of the navigation covariances: time (us), 12x12.")
 
     def files(self, folder: Path) -> set[Path]:
         """Every file that is read, of a data set in this folder."""
-        return {*folder.glob(self.views), folder / self.covariances}
+        return {*matching(folder, self.views), folder / self.covariances}
 
 
 class ScansSection(Settings):
     """Scan images with a time stamp for each line, and the navigation system's raw log."""
 
     kind: Literal["scans"] = Field(description="Scan images, one a view of the pattern.")
-    dataset: str | None = Field(
+    dataset: Dataset | None = Field(
         None, description="Data set, as named in the study's configuration; none where the platform is simulated."
     )
-    scans: str = Field(
+    scans: Files = Field(
         "scans/*.hdr",
         description="Scans (ENVI headers, PNG, TIFF, JPEG) in the order of the observations, their time stamps beside.",
     )
@@ -74,7 +75,7 @@ class ScansSection(Settings):
     points: Literal["labels", "detection"] = Field(
         "labels", description="Pattern points from approximate labels, or found without any."
     )
-    labels: str = Field(
+    labels: Files = Field(
         "labels.csv",
         description="Labels: CSV (observation, point, u_px, line), CVAT for images 1.1 (.xml), LabelMe (a pattern "
         "of .json files, one a scan), COCO keypoints, Label Studio or VIA (.json).",
@@ -94,7 +95,7 @@ class ScansSection(Settings):
         description="Raw navigation log: path of Parquet or CSV with time_us, north_m, ..., yaw_rad, or a format with "
         "its keys.",
     )
-    covariances: str | None = Field(
+    covariances: Files | None = Field(
         None,
         description="File of the navigation covariances: time (us), 12x12. If not given, covariances.csv beside a log "
         "that is named by its path, else those in the log.",
@@ -119,7 +120,7 @@ class ScansSection(Settings):
 
     def files(self, folder: Path) -> set[Path]:
         """Every file that is read, of a data set in this folder."""
-        scans = list(folder.glob(self.scans))
+        scans = matching(folder, self.scans)
         beside = {path for scan in scans for path in scan.parent.glob(f"{glob.escape(scan.stem)}[.-]*")}
         beside |= {scan.with_suffix("") for scan in scans}  # run.bil of run.bil.hdr
         if self.time_stamps == "resonon":
@@ -128,7 +129,7 @@ class ScansSection(Settings):
             beside |= {path for scan in scans for path in scan.parent.glob("frameIndex_*.txt")}
         beside |= {self.time_path(scan, "{name}-times.csv") for scan in scans}
         beside |= {scan.parent / name for scan in scans for name in data_files(scan)}
-        labels = set(folder.glob(self.labels)) or {folder / self.labels} if self.points == "labels" else set()
+        labels = set(matching(folder, self.labels)) or {folder / self.labels} if self.points == "labels" else set()
         navigation = self.navigation
         log = {folder / navigation} if isinstance(navigation, str) else navigation.files(folder)
         covariances = {folder / self.covariances} if self.covariances else set()

@@ -7,7 +7,7 @@ from typing import Literal, Self
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
-from linepose.config.platform import read_yaml
+from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 from linepose.settings import Settings, validated
 

@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
-from linepose.config.platform import read_yaml
 from linepose.config.project import CONFIG as CONFIG
 from linepose.config.project import Compared, Project, compared_with_none, load_project
+from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 
 

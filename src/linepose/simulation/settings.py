@@ -18,7 +18,7 @@ from linepose.errors import InputError
 Triple = tuple[float, float, float]
 Sextuple = tuple[float, float, float, float, float, float]
 _ZERO: Triple = (0.0, 0.0, 0.0)
-_CLOSED = ConfigDict(extra="forbid")
+_CLOSED = ConfigDict(extra="forbid", allow_inf_nan=False)
 _DEGREES = re.compile("_deg(?=_s$|$)")
 
 
@@ -206,7 +206,7 @@ def settings_from_dict(section: Mapping[str, Any], place: str = "simulation") ->
 def _in_radians(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {
-            _DEGREES.sub("_rad", key): _radians(item) if _DEGREES.search(key) else _in_radians(item)
+            _DEGREES.sub("_rad", str(key)): _radians(item) if _DEGREES.search(str(key)) else _in_radians(item)
             for key, item in value.items()
         }
     if isinstance(value, list | tuple):
@@ -217,5 +217,5 @@ def _in_radians(value: Any) -> Any:
 def _radians(value: Any) -> Any:
     try:
         return np.deg2rad(value).tolist()
-    except TypeError:
+    except (TypeError, ValueError):
         return value  # the check of kinds names the key

@@ -6,7 +6,8 @@ import pytest
 import yaml
 from scipy.spatial.transform import Rotation
 
-from linepose.config.platform import Platform, load_platform, read_yaml
+from linepose.config.platform import Platform, load_platform
+from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 from linepose.paper.hand_measured import hand_measured_sigma
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from linepose.config.platform import read_yaml
+from linepose.config.yaml_file import read_yaml
 from linepose.experiments.truth_error import POSE, POSITION, ROTATION
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.paper.declarations import load_declarations

@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked
 from linepose.inputs.labels.format import LabelFormat, tell_passed_over
+from linepose.inputs.number_files import plain_float, plain_whole
 
 _HELPERS: Final = {"box", "polygon", "polyline", "mask", "ellipse", "cuboid"}
 
@@ -20,8 +21,8 @@ def read(path: Path, _: object = None) -> list[Clicked]:
     """The points of one file; raises InputError where it is not CVAT's."""
     try:
         root = ElementTree.parse(path).getroot()
-    except ElementTree.ParseError as error:
-        raise InputError(str(path), str(error), "CVAT's XML", "restore the file") from None
+    except (ElementTree.ParseError, LookupError, ValueError, OSError) as error:
+        raise InputError(str(path), str(error) or "a broken file", "CVAT's XML", "restore the file") from None
     if root.tag != "annotations":
         expected, remedy = "CVAT for images 1.1: <annotations>", "export the task in that format"
         raise InputError(str(path), f"an element <{root.tag}>", expected, remedy)
@@ -51,8 +52,8 @@ def _shapes(image: ElementTree.Element) -> Iterator[ElementTree.Element]:
 def _point(element: ElementTree.Element, where: str, image: ElementTree.Element) -> Clicked:
     places = element.get("points", "").split(";")
     try:
-        x, y = (float(word) for word in places[0].split(","))
-        width = int(image.attrib["width"]) if "width" in image.attrib else None
+        x, y = (plain_float(word) for word in places[0].split(","))
+        width = plain_whole(image.attrib["width"]) if "width" in image.attrib else None
     except ValueError:
         raise InputError(where, f"points={element.get('points')!r}", "x,y", "draw the point anew") from None
     if len(places) > 1:

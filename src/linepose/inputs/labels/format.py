@@ -30,7 +30,7 @@ def read_json(path: Path) -> Any:
     """The content of a JSON file; raises InputError where it is none."""
     try:
         return json.loads(path.read_text(encoding="utf-8-sig"))
-    except (ValueError, RecursionError) as error:
+    except (ValueError, RecursionError, OSError) as error:
         found = " ".join(str(error).split())[:200]
         raise InputError(str(path), found, "labels in JSON", "restore the file") from None
 

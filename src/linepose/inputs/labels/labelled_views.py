@@ -11,6 +11,7 @@ import pyarrow as pa
 
 from linepose.errors import InputError, quoted
 from linepose.inputs.number_files import check_microseconds, read_named_numbers
+from linepose.inputs.patterns import matching
 from linepose.survey.observations import EULER_COLUMNS, POINT_FIELDS, POSITION_COLUMNS
 from linepose.survey.point_names import WHAT, in_words, nameless, point_name, point_names
 
@@ -26,7 +27,7 @@ def select_views(folder: Path, pattern: str, first: int, step: int) -> list[Path
 
     Raises InputError where that leaves none.
     """
-    found = sorted(folder.glob(pattern))
+    found = matching(folder, pattern)
     paths = found[first - 1 :: step]
     if not paths:
         remedy = "correct source.views and source.first, or put the files there"
@@ -70,7 +71,7 @@ def _read_view(path: Path, n_pixels: int) -> pd.DataFrame:
         if labelled[row]:
             place, found = f"{path}, row {row + 1}, column 2", f"point {quoted(names[row])}"
             raise InputError(place, found, WHAT, "correct the point's id")
-    for row in np.flatnonzero(labelled):
+    for row in np.flatnonzero(labelled & _is_doubtful(view, n_pixels))[:1]:
         _check_row(view.iloc[row], f"{path}, row {row + 1}", n_pixels)
     view = view.assign(point=pd.Series([point_name(name) for name in names], dtype=object))[labelled]
     repeated = np.flatnonzero(view["point"].duplicated())
@@ -86,6 +87,14 @@ def _read_view(path: Path, n_pixels: int) -> pd.DataFrame:
     if view.empty:
         raise InputError(str(path), "no labelled point", "at least one", "leave the file out")
     return view.sort_values("time_us")
+
+
+def _is_doubtful(view: pd.DataFrame, n_pixels: int) -> np.ndarray:
+    """Rows (R,) that `_check_row` refuses."""
+    u_px = view["u_px"].to_numpy()
+    good = np.all(np.isfinite(view.to_numpy(dtype=float)), axis=1) & (u_px >= -0.5) & (u_px <= n_pixels - 0.5)
+    good &= np.all(np.abs(view[list(EULER_COLUMNS)].to_numpy()) <= 2 * np.pi, axis=1)
+    return np.asarray(~good)
 
 
 def _check_row(row: pd.Series, place: str, n_pixels: int) -> None:

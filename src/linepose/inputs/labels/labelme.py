@@ -15,7 +15,7 @@ def recognises(content: Any) -> bool:
 
 def read(path: Path, content: Any) -> list[Clicked]:
     """The points of one file, other shapes passed over."""
-    picture, width = content.get("imagePath") or path.name, content.get("imageWidth")
+    picture, width = str(content.get("imagePath") or path.name), content.get("imageWidth")
     shapes = list(enumerate(content["shapes"], 1))
     points = [(number, one) for number, one in shapes if isinstance(one, dict) and one.get("shape_type") == "point"]
     tell_passed_over(path, {"shapes that are no points": len(shapes) - len(points)})
@@ -27,8 +27,10 @@ def _point(shape: dict[str, Any], where: str, picture: str, width: int | None) -
     given = () if group is None else (("group_id", str(group)),)
     try:
         (x, y), *rest = shape["points"]
+        if not all(type(one) in (int, float) for one in (x, y)):
+            raise TypeError
         clicked = Clicked(str(shape["label"]), float(x), float(y), picture, width, where, given)
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError, OverflowError):
         rest = [None]
     if rest:
         raise InputError(where, "no label with one place", "a label and a place [x, y]", "draw the point anew")

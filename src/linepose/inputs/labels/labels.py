@@ -24,9 +24,12 @@ def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
         raise InputError(str(path), "no such file", "approximate labels", "restore it, or set source.points: detection")
     try:
         table = pd.read_csv(path, dtype={"point": str})
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
+    except (ValueError, OSError, OverflowError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "CSV with a heading", "mend the file") from None
+    twice = [name for name in _COLUMNS if f"{name}.1" in table]
+    if twice:
+        raise InputError(str(path), f"column {twice[0]} twice", "each column once", "remove or rename one of them")
     missing = [name for name in _COLUMNS if name not in table]
     if missing:
         expected = f"columns {', '.join(_COLUMNS)}"

@@ -14,6 +14,7 @@ from linepose.inputs.labels.clicked import Clicked, labels_of
 from linepose.inputs.labels.format import read_json
 from linepose.inputs.labels.labels import read_labels
 from linepose.inputs.labels.registry import FORMATS
+from linepose.inputs.patterns import matching
 
 
 def read_point_labels(
@@ -27,7 +28,7 @@ def read_point_labels(
     """
     if Path(pattern).suffix.lower() == ".csv":
         return read_labels(folder / pattern, list(scans))
-    paths = sorted(folder.glob(pattern))
+    paths = matching(folder, pattern)
     if not paths:
         remedy = "restore it, correct source.labels, or set source.points: detection"
         raise InputError(str(folder / pattern), "no such file", "approximate labels", remedy)

@@ -17,6 +17,7 @@ from linepose.inputs.navigation.table_file import read_columns
 from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad
 from linepose.inputs.navigation.table_times import OF_TEXT
 from linepose.inputs.navigation.usable_rows import usable_rows
+from linepose.inputs.patterns import Files, matching
 from linepose.settings import Settings
 
 log = logging.getLogger(__name__)
@@ -38,12 +39,12 @@ class AttitudeColumns(Settings):
 class AttitudeSection(TimedLayout):
     """Keys of the log of attitudes beside one of positions; those of its layout, clock and units are its own."""
 
-    file: str = Field(description="Log of attitudes below the data set's folder, or a pattern: Parquet or text.")
+    file: Files = Field(description="Log of attitudes below the data set's folder, or a pattern: Parquet or text.")
     columns: AttitudeColumns = Field(AttitudeColumns(), description="Which column holds what.")
 
     def files(self, folder: Path) -> list[Path]:
         """The logs, sorted by name."""
-        return sorted(folder.glob(self.file))
+        return matching(folder, self.file)
 
 
 def with_attitudes(

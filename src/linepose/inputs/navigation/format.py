@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from linepose.errors import InputError
+from linepose.inputs.patterns import Files, matching
 from linepose.settings import Settings
 
 if TYPE_CHECKING:
@@ -18,13 +19,13 @@ class NavigationFormatSection(Settings):
     """Keys of every navigation format; a format adds its own, and narrows `format` to its name."""
 
     format: str
-    file: str = Field(
+    file: Files = Field(
         description="Log below the data set's folder, or a pattern of logs (`run-*.gps`) that follow in time."
     )
 
     def paths(self, folder: Path) -> list[Path]:
         """The logs, sorted by name; raises InputError where there is none."""
-        found = sorted(folder.glob(self.file))
+        found = matching(folder, self.file)
         if not found:
             remedy = "restore it, or correct source.navigation.file"
             raise InputError(str(folder / self.file), "no such file", "a navigation log", remedy)
@@ -32,7 +33,7 @@ class NavigationFormatSection(Settings):
 
     def files(self, folder: Path) -> set[Path]:
         """Every file that is read; those of a log that is a folder one by one."""
-        return with_contents(folder.glob(self.file))
+        return with_contents(matching(folder, self.file))
 
     def lacking(self, folder: Path) -> Literal["gps_week", "date"] | None:  # noqa: ARG002
         """The key that the scans' first time stamp gives, where the log counts from a day that it does not say."""

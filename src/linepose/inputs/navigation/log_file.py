@@ -6,7 +6,6 @@ from typing import Final
 import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pa_csv
-import pyarrow.parquet as pq
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
@@ -14,6 +13,7 @@ from linepose.inputs.navigation.usable_rows import usable_rows
 from linepose.inputs.number_files import check_microseconds
 from linepose.survey.navigation_log import NavigationLog
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
+from linepose.tables import read_parquet
 
 _COLUMNS: Final = ("time_us", *POSITION_COLUMNS, *EULER_COLUMNS)
 _FEWEST_ROWS: Final = 2
@@ -44,17 +44,25 @@ def _read_columns(path: Path) -> pa.Table:
     types = {name: pa.float64() for name in _COLUMNS} | {"time_us": pa.int64()}
     try:
         if path.suffix == ".parquet":
-            table = pq.read_table(path)
+            table = read_parquet(path)
         else:
             table = pa_csv.read_csv(path, convert_options=pa_csv.ConvertOptions(column_types=types))
+        twice = [name for name in _COLUMNS if table.column_names.count(name) > 1]
+        if twice:
+            expected = f"each of {', '.join(_COLUMNS)} once"
+            raise InputError(str(path), f"column {twice[0]} twice", expected, "remove or rename one of them")
         missing = [name for name in _COLUMNS if name not in table.column_names]
         if missing:
             expected = f"columns {', '.join(_COLUMNS)}"
             raise InputError(str(path), f"no column {', '.join(missing)}", expected, "name the columns so")
         table = table.select(list(_COLUMNS)).cast(pa.schema(list(types.items())))
-    except (pa.ArrowException, UnicodeDecodeError) as error:
+    except (pa.ArrowException, OSError, ValueError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "Parquet, or CSV with a heading", "mend the file") from None
+    for name in _COLUMNS:
+        for row in np.flatnonzero(table[name].is_null().to_numpy())[:1]:
+            place = f"{path}, row {row + 1}, {name}"
+            raise InputError(place, "nothing", "a number in each row", "remove the row")
     if table.num_rows < _FEWEST_ROWS:
         raise InputError(str(path), f"{table.num_rows} rows", "two or more", "restore the log")
     return table

@@ -157,7 +157,7 @@ def _poses(messages: Messages, kind: str) -> Poses:
         remedy = f"log {kind} messages after the INS has aligned"
         raise InputError(str(messages.path), found, "INSPVA, INSPVAS or INSPVAX messages with a solution", remedy)
     table = _in_turn(rows, messages.path)
-    time_us = gps_time.unix_from_week(table[:, 0], table[:, 1])
+    time_us = gps_time.unix_from_week(table[:, 0], table[:, 1], str(messages.path))
     return Poses(time_us, table[:, 2:5], np.deg2rad(table[:, 5:8]), str(messages.path))
 
 
@@ -166,7 +166,7 @@ def _covariances(messages: Messages, poses: Poses, kind: str) -> Covariances:
     if not rows:
         return Covariances(poses.time_us[:0], np.empty((0, 6, 6)), str(messages.path))
     table = _in_turn(rows, messages.path)
-    time_us = gps_time.unix_from_week(table[:, 0], table[:, 1])
+    time_us = gps_time.unix_from_week(table[:, 0], table[:, 1], str(messages.path))
     if kind == "INSCOV":
         euler = poses.euler_rad[nearest_rows(poses.time_us, time_us)]
         return Covariances(time_us, _from_local_level(table[:, 2:], euler), str(messages.path))

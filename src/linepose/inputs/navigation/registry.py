@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Discriminator, GetJsonSchemaHandler, Seria
 
 from linepose.errors import InputError
 from linepose.inputs.navigation.format import NavigationFormat, NavigationFormatSection
+from linepose.inputs.patterns import Files
 from linepose.plugins import PluginGroup
 from linepose.settings import validated
 
@@ -66,7 +67,7 @@ def _kind(value: Any) -> str:
 
 # closed: an unknown key of any format is an error, also of one that another package brings
 Navigation = Annotated[
-    Annotated[str, Tag("path")]
+    Annotated[Files, Tag("path")]
     | Annotated[SerializeAsAny[NavigationFormatSection], BeforeValidator(_section), SectionsOfFormats(), Tag("format")],
     Discriminator(_kind),
 ]

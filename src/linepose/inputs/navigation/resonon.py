@@ -51,4 +51,4 @@ def _poses(path: Path, time_scale: TimeScale) -> Poses:
             log.warning("%s: %d rows that the recorder marks as of no use are left out", path, np.sum(~usable))
         rows = rows[usable]
     euler = rows[:, 1:4] * [-1.0, 1.0, 1.0]
-    return Poses(location_unix_us(rows[:, 0], time_scale), rows[:, [5, 4, 6]], euler, str(path))
+    return Poses(location_unix_us(rows[:, 0], time_scale, path), rows[:, [5, 4, 6]], euler, str(path))

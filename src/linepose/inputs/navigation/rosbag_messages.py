@@ -1,20 +1,17 @@
 """Messages of bags of ROS 1 (.bag) and ROS 2 (a folder, or .db3 and .mcap files), topic by topic."""
 
-import struct
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from linepose.errors import InputError
+from linepose.errors import InputError, LineposeError
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[Any]:
     """The bag, whatever its kind; faults of its format, also those met while reading, become one line."""
-    from rosbags.highlevel import AnyReader, AnyReaderError
-    from rosbags.rosbag1 import ReaderError as Ros1Error
-    from rosbags.rosbag2 import ReaderError as Ros2Error
+    from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_typestore
 
     in_folder = path.suffix in {".db3", ".mcap"} and (path.parent / "metadata.yaml").is_file()
@@ -23,7 +20,9 @@ def opened(path: Path) -> Iterator[Any]:
             [path.parent if in_folder else path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)
         ) as bag:
             yield bag
-    except (AnyReaderError, Ros1Error, Ros2Error, struct.error, AssertionError) as error:
+    except LineposeError:
+        raise
+    except Exception as error:  # of broken bags, the reader lets out whatever its decoders raise
         found = " ".join(str(error).split()) or type(error).__name__
         remedy = "restore the bag, or repair its index (rosbag reindex, ros2 bag reindex)"
         raise InputError(str(path), found, "a whole ROS 1 or ROS 2 bag", remedy) from None

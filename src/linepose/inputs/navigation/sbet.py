@@ -17,6 +17,7 @@ from linepose.errors import InputError
 from linepose.inputs import axes, gps_time
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat, with_contents
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record
+from linepose.inputs.patterns import Files, matching
 
 _TRAJECTORY: Final = 17
 _RMS: Final = 10
@@ -27,14 +28,14 @@ class SbetSection(GeodeticSection):
     """Keys of the format `sbet`."""
 
     format: Literal["sbet"] = Field(description="`sbet`: an SBET trajectory (Applanix, Inertial Explorer) and its RMS.")
-    rms: str | None = Field(None, description="File of the trajectory's RMS (smrmsg), or a pattern, like `file`.")
+    rms: Files | None = Field(None, description="File of the trajectory's RMS (smrmsg), or a pattern, like `file`.")
     gps_week: int | None = Field(
         None, ge=0, description="The GPS week of the first record; if not given, that of the scans' first time stamp."
     )
 
     def files(self, folder: Path) -> set[Path]:
         """Every file that is read."""
-        return super().files(folder) | (with_contents(folder.glob(self.rms)) if self.rms else set())
+        return super().files(folder) | (with_contents(matching(folder, self.rms)) if self.rms else set())
 
     def lacking(self, folder: Path) -> Literal["gps_week"] | None:  # noqa: ARG002
         """The week, where it is not given."""
@@ -73,7 +74,7 @@ def _covariances(path: Path, week: int | None) -> Covariances:
 
 
 def _unix(path: Path, table: Floats, week: int | None) -> np.ndarray:
-    return gps_time.unix_from_week_of_first(week, gps_time.microseconds(table[:, 0], "s"), str(path))
+    return gps_time.unix_from_week_of_first(week, gps_time.microseconds(table[:, 0], "s", str(path)), str(path))
 
 
 def _records(path: Path, n_values: int, what: str) -> Floats:

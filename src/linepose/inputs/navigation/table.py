@@ -24,6 +24,7 @@ from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts
 from linepose.inputs.navigation.table_file import read_columns
 from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad
 from linepose.inputs.navigation.table_times import OF_TEXT
+from linepose.inputs.patterns import Files
 from linepose.settings import Settings
 
 _ENU_SIGMAS: Final = [1, 0, 2]  # standard deviations of east, north, up in the order north, east, down
@@ -74,7 +75,7 @@ class TableSection(TimedLayout, GeodeticSection):
         description="Longest time between two positions over which they are interpolated to an attitude of the second "
         "log (s).",
     )
-    times: str | None = Field(
+    times: Files | None = Field(
         None, description="File of the rows' times, one a line, where the log has none; its column is then `time`."
     )
     coordinates: Literal["ned", "enu", "geodetic"] = Field(

@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-import pyarrow as pa
-import pyarrow.parquet as pq
-
 from linepose.errors import InputError
 from linepose.inputs.navigation.table_columns import Columns, Name, parts_of
 from linepose.inputs.navigation.text_file import TextLayout, read_text
+from linepose.tables import read_parquet
 
 _PARQUET: Final = {".parquet", ".pq"}
 
@@ -21,7 +19,11 @@ def read_columns(
     if path.suffix.lower() not in _PARQUET:
         table = read_text(path, layout, [part for name in used for part in parts_of(name)], as_text, apart)
         return Columns(path, table.cells, table.first_line, table.names)
+    table = read_parquet(path)
+    twice = [name for name in table.column_names if table.column_names.count(name) > 1]
+    if twice:
+        raise InputError(str(path), f"column {twice[0]} twice", "each column once", "remove or rename one of them")
     try:
-        return Columns(path, pq.read_table(path).to_pandas(timestamp_as_object=False), 0)
-    except (pa.ArrowException, OSError) as error:
-        raise InputError(str(path), " ".join(str(error).split()), "a Parquet file", "restore it") from None
+        return Columns(path, table.to_pandas(timestamp_as_object=False), 0)
+    except (ValueError, TypeError) as error:
+        raise InputError(str(path), " ".join(str(error).split()), "columns of numbers and text", "restore it") from None

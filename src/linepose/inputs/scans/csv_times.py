@@ -48,7 +48,7 @@ def _microseconds(cells: list[str], kind: str, path: Path, heading: int) -> NDAr
     if kind == whole:
         return np.array(cells, dtype=np.int64)
     if kind == seconds:
-        return gps_time.microseconds(np.array(cells, dtype=float), "s")
+        return gps_time.microseconds(np.array(cells, dtype=float), "s", str(path))
     times = pd.to_datetime(pd.Series(cells).str.replace("/", "-"), utc=True, format="ISO8601", errors="coerce")
     for row in np.flatnonzero(times.isna().to_numpy())[:1]:
         raise _fault(path, heading + int(row) + 1, cells[row], kind)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from linepose.errors import InputError
 from linepose.inputs import gps_time
 from linepose.inputs.location_files import location_rows, location_unix_us
+from linepose.inputs.number_files import plain_float, plain_whole
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.scans.csv_times import read_times
 from linepose.inputs.scans.event_times import burst, event_times
@@ -24,7 +25,6 @@ from linepose.inputs.source import ScansSection
 Stamps = NDArray[np.int64]
 
 _INTERLEAVES: Final = {".bil", ".bip", ".bsq"}
-_FIELDS: Final = 2  # Headwall's frame number and time stamp
 
 
 def line_times_of(source: ScansSection) -> LineTimes:
@@ -67,9 +67,9 @@ def _resonon(scan: Path, source: ScansSection) -> tuple[Stamps, Path, int]:
     times_file = _first_file([f"{name}{ending}" for name in names for ending in (".times", *_TIMES_ENDINGS)], scan)
     location = _first_file([f"{name}.lcf" for name in names], scan)
     seconds = np.array([_number(word, times_file, row) for row, word in enumerate(_rows(times_file), start=1)])
-    start_us = int(location_unix_us(location_rows(location)[:1, 0], source.time_scale or "gps")[0])
+    start_us = int(location_unix_us(location_rows(location)[:1, 0], source.time_scale or "gps", location)[0])
     gps_time.tell_lost_weeks(start_us, str(location))
-    return start_us + gps_time.microseconds(seconds - seconds[:1], "s"), times_file, 0
+    return start_us + gps_time.microseconds(seconds - seconds[:1], "s", str(times_file)), times_file, 0
 
 
 _TIMES_ENDINGS: Final = tuple(f"{ending}.times" for ending in sorted(_INTERLEAVES))
@@ -83,11 +83,17 @@ def _headwall(scan: Path, source: ScansSection) -> tuple[Stamps, Path, int]:
     times = np.empty(len(rows) - heading, dtype=np.int64)
     for index, row in enumerate(rows[heading:]):
         words = row.split()
-        if len(words) != _FIELDS or not words[1].isdigit():
+        try:
+            _, times[index] = _two(words)
+        except ValueError:
             place, expected = f"{path}, row {index + heading + 1}", "a frame number and its time stamp (us)"
-            raise InputError(place, repr(row[:60]), expected, "mend the row, or remove it with its line")
-        times[index] = int(words[1])
+            raise InputError(place, repr(row[:60]), expected, "mend the row, or remove it with its line") from None
     return _unix(times, source), path, heading
+
+
+def _two(words: list[str]) -> tuple[str, int]:
+    frame, stamp = words
+    return frame, plain_whole(stamp)
 
 
 def _frame_index(scan: Path) -> str:
@@ -178,6 +184,6 @@ def _rows(path: Path) -> list[str]:
 
 def _number(word: str, path: Path, row: int) -> float:
     try:
-        return float(word)
+        return plain_float(word)
     except ValueError:
         raise InputError(f"{path}, row {row}", repr(word[:60]), "a time in seconds", "mend the row") from None

@@ -1,0 +1,52 @@
+"""Names and patterns of files below a data set's folder, as a platform file gives them."""
+
+import re
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Final
+
+from pydantic import AfterValidator
+
+from linepose.errors import InputError
+
+_SIGNS: Final = re.compile(r"[*?\[]")
+_FOLDER: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*(?<!\.)", re.ASCII)
+_MOST_CHARACTERS: Final = 1_000
+
+
+def _is_below(pattern: str) -> str:
+    path = PurePosixPath(pattern)
+    if not path.parts or path.is_absolute() or not pattern.isprintable() or len(pattern) > _MOST_CHARACTERS:
+        raise ValueError("a file, or a pattern of files, below the data set's folder")
+    if any(sign in pattern for sign in "{}"):
+        raise ValueError("a name without braces, in which the workflow would look for its own words")
+    if ".." in path.parts:
+        raise ValueError("a file below the data set's folder, not one above it")
+    if "**" in pattern and any("**" in part and part != "**" for part in path.parts):
+        raise ValueError("** as the whole name of a folder")
+    return pattern
+
+
+def _is_folder(name: str) -> str:
+    if not _FOLDER.fullmatch(name):
+        raise ValueError("the name of a folder: letters, digits, -, _ and dots within")
+    return name
+
+
+Files = Annotated[str, AfterValidator(_is_below)]
+Dataset = Annotated[str, AfterValidator(_is_folder)]
+
+
+def matching(folder: Path, pattern: str) -> list[Path]:
+    """The files of a folder that a name or a pattern is of, sorted by name; a file of just this name comes first.
+
+    Raises InputError where one has a name that the workflow cannot have.
+    """
+    exact = folder / pattern
+    if _SIGNS.search(pattern) and exact.exists():
+        return [exact]
+    found = sorted(folder.glob(pattern))
+    for path in found:
+        if any(sign in path.relative_to(folder).as_posix() for sign in "{}"):
+            expected = "a name without braces, in which the workflow would look for its own words"
+            raise InputError(str(path), "braces in a file's name", expected, "rename the file")
+    return found

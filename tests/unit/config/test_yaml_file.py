@@ -1,0 +1,43 @@
+"""YAML that PyYAML takes for something else than was meant, or fails on outside its own errors."""
+
+import pytest
+
+from linepose.config.yaml_file import parsed_yaml
+from linepose.errors import InputError
+
+BOMB = "a0: &a0 [x, x, x, x, x, x, x, x]\n" + "".join(
+    f"a{one}: &a{one} [{', '.join([f'*a{one - 1}'] * 8)}]\n" for one in range(1, 12)
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("date: 2024-02-30", "a value that is none"),
+        ("a: !!int abc", "a value that is none"),
+        (f"a: {'9' * 5000}", "a value that is none"),
+        ("[" * 5000, "in lists"),
+        ("a: &a [*a]", "in lists"),
+        (BOMB, "in lists"),
+        ("a: 1\nb: 2\na: 3", "line 3: found the key 'a' again"),
+        ("a: {b: 1, b: 2}", "the key 'b' again"),
+        ("a: 1_00", "found 1_00"),
+        ("a: 1:30", "found 1:30"),
+        ("a: [", "expected YAML"),
+        ("a: \x00", "expected YAML"),
+    ],
+)
+def test_is_one_line(text, told):
+    with pytest.raises(InputError) as caught:
+        parsed_yaml(text, "a.yaml")
+    assert told in str(caught.value)
+    assert str(caught.value).startswith("a.yaml")
+    assert str(caught.value).isprintable()
+
+
+def test_plain_values_are_as_before():
+    assert parsed_yaml("a: &x [1, -2.5e-3, text, 2024-05-01T10:00:00Z]\nb: *x\nc: yes", "a.yaml")["b"][:3] == [
+        1,
+        -2.5e-3,
+        "text",
+    ]

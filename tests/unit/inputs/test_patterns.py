@@ -1,0 +1,34 @@
+import pytest
+
+from linepose.errors import InputError
+from linepose.inputs.patterns import matching
+from linepose.inputs.source import ScansSection
+from linepose.settings import validated
+
+
+@pytest.mark.parametrize(
+    "pattern", ["", "/data/*.hdr", "../scans/*.hdr", "scans/{a}.hdr", "a\x00b", "a**b/*.hdr", ".", "x" * 2000]
+)
+@pytest.mark.parametrize("key", ["scans", "labels", "navigation", "covariances"])
+def test_pattern_that_the_run_cannot_use_is_refused(key, pattern):
+    with pytest.raises(InputError, match=f"source.yaml: {key}"):
+        validated(ScansSection, {"kind": "scans", "dataset": "own", key: pattern}, "source.yaml")
+
+
+@pytest.mark.parametrize("name", ["two words", "../own", "/own", "own/{a}", ""])
+def test_data_set_is_the_name_of_a_folder(name):
+    with pytest.raises(InputError, match="the name of a folder"):
+        validated(ScansSection, {"kind": "scans", "dataset": name}, "source.yaml")
+
+
+def test_a_file_with_signs_of_patterns_is_found_by_its_name(tmp_path):
+    for name in ("run[1].hdr", "run1.hdr"):
+        (tmp_path / name).touch()
+    assert matching(tmp_path, "run[1].hdr") == [tmp_path / "run[1].hdr"]
+    assert matching(tmp_path, "*.hdr") == [tmp_path / "run1.hdr", tmp_path / "run[1].hdr"]
+
+
+def test_a_file_with_braces_is_told(tmp_path):
+    (tmp_path / "run{1}.hdr").touch()
+    with pytest.raises(InputError, match="rename the file"):
+        matching(tmp_path, "*.hdr")
