@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from linepose.config.platform import read_yaml
+from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 from linepose.settings import Settings, validated
 from linepose.survey.targets.base import TargetSection
