@@ -105,7 +105,8 @@ def read_table(path: Path | str, schema: pa.Schema | None = None) -> pd.DataFram
     missing = [name for name in schema.names if name not in arrow.column_names] if schema else []
     if missing:
         raise InputError(str(path), f"no column {', '.join(missing)}", "the stage's schema", "delete it and run again")
-    wrong = [one.name for one in schema or () if arrow.schema.field(one.name).type != one.type]
+    held = {one.name: {one.type, pa.string()} if one.metadata == _NAMES else {one.type} for one in schema or ()}
+    wrong = [name for name, kinds in held.items() if arrow.schema.field(name).type not in kinds]
     if wrong:
         raise InputError(
             str(path), f"column {wrong[0]} of another type", "the stage's schema", "delete it and run again"

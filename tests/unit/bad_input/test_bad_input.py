@@ -9,7 +9,7 @@ from linepose.errors import LineposeError
 from unit.bad_input.mutations import mutated, mutations
 from unit.bad_input.readers import READERS, readers
 
-EXAMPLES = 12
+EXAMPLES = 4
 LONGEST_S = 10
 LONGEST_LINE = 2_500
 
