@@ -79,7 +79,7 @@ _BYTES = (
     *(struct.pack("<d", one) for one in _DOUBLES),
     *(struct.pack("<I", one) for one in (0, 1, 2**31, 2**32 - 1, 10**6)),
 )
-_MOST_BYTES = 3_000_000
+_MOST_BYTES = 300_000
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 _WORD = re.compile(rb"[^\s,;={}\[\]<>\"]+")
 
