@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import typer
+from typer.testing import CliRunner
 
 from linepose.cli.app import app
 from unit.test_rooms import ROOMS
@@ -74,6 +75,17 @@ def test_commands_of_linepose_and_their_options_exist(page):
             assert command in options(), words
             asked = {word.split("=")[0] for word in words[1:] if re.match("--?[a-z]", word)}
             assert asked <= options()[command] | {"--help"}, words
+
+
+def test_commands_of_the_page_on_targets_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"^```bash\n(.*?)^```$", (DOCS / "targets.md").read_text(), re.MULTILINE | re.DOTALL)
+    rows = [row for block in blocks for row in block.splitlines()]
+    assert len(rows) == 5
+    for row in rows:
+        ran = CliRunner().invoke(app, shlex.split(row)[1:])
+        assert ran.exit_code == 0, ran.output
+    assert {path.stem for path in tmp_path.glob("*.pdf")} == {"board", "rings", "chessboard", "again"}
 
 
 @every_page
