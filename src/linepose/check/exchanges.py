@@ -81,5 +81,6 @@ def _errors(
     )
     out = empty_linearised(len(rows))
     bodies, place = measurements.body_pose[rows], np.ascontiguousarray(adjusted.points_m[measurements.points])
-    linearise(measurements.u_px[rows], bodies, np.zeros_like(bodies), points, place, optics, out)
+    shifts = measurements.known.shifts
+    linearise(measurements.u_px[rows], bodies, np.zeros_like(bodies), points, place, shifts, optics, out)
     return out.residual_px
