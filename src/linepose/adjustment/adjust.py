@@ -27,7 +27,7 @@ from linepose.adjustment.settings import AdjustmentSettings, default_hand_covari
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at
 from linepose.arrays import Floats
-from linepose.errors import InputError
+from linepose.errors import EstimationError, InputError
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import check_pose
 from linepose.survey.observations import Survey
@@ -51,7 +51,26 @@ def adjust(
     InputError for observations, covariances or sigmas of the camera that are of no use, EstimationError where no start
     leads to an estimate.
     """
-    settings = settings or AdjustmentSettings()
+    found = _adjusted(
+        survey, camera, hand_measured_pose, hand_covariance, settings or AdjustmentSettings(), known_points, start_pose
+    )
+    if not (np.all(np.isfinite(found.pose)) and np.all(np.isfinite(found.covariance))):
+        raise EstimationError(
+            "adjustment: the pose or its covariance is no number; check the units of positions and covariances (m, "
+            "rad), of the camera's sigmas and of those of the hand measurement"
+        )
+    return found
+
+
+def _adjusted(
+    survey: Survey,
+    camera: Camera,
+    hand_measured_pose: ArrayLike,
+    hand_covariance: ArrayLike | None,
+    settings: AdjustmentSettings,
+    known_points: KnownPoints | None,
+    start_pose: ArrayLike | None,
+) -> Adjustment:
     pose = check_pose(hand_measured_pose, "hand-measured pose")
     start = pose if start_pose is None else check_pose(start_pose, "start pose")
     _check_camera(camera)
@@ -137,6 +156,7 @@ def _known_of_all(measurements: Measurements, few: Measurements, fitted: KnownPo
 def _check_camera(camera: Camera) -> None:
     sigmas = {
         "u_px": camera.sigmas.u_px,
+        "v_px": camera.sigmas.v_px,
         "principal_point_px": camera.sigmas.principal_point_px,
         "focal_length_m": camera.sigmas.focal_length_m,
     }

@@ -1,11 +1,11 @@
-"""What the errors of a view that the adjustment gave little weight look like: a clock, labels, or a jump."""
+"""What the errors of a view that the adjustment gave little weight look like: a clock, labels, a jump, or unclear."""
 
 from typing import Final
 
 import numpy as np
 
 from linepose.adjustment.result import Adjustment
-from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL
+from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL, UNCLEAR
 from linepose.arrays import Floats
 from linepose.likelihood.base import Residuals
 
@@ -14,10 +14,10 @@ _FEWEST: Final = 3  # measurements of a view that tell causes apart
 
 
 def view_faults(found: Adjustment, errors: Residuals) -> list[str]:
-    """One word a view (N,): `clock`, `label` or `jump`, empty for a view that is as good as the rest.
+    """One word a view (N,): `clock`, `label`, `jump` or `unclear`, empty for a view that is as good as the rest.
 
     Some measurements far off while the others are good: labels. Errors that one time shift explains: a clock. Otherwise
-    the body's pose jumped or drifted within the view.
+    the body's pose jumped or drifted within the view. Of fewer than three measurements it is not clear.
     """
     words = []
     for view in range(len(found.view_weight)):
@@ -34,7 +34,7 @@ def _or_one(weights: Floats) -> float:
 def _word(errors: Residuals, single: Floats, view: int) -> str:
     seen = np.flatnonzero(np.isfinite(errors.error_px[view]))
     if len(seen) < _FEWEST:
-        return JUMP
+        return UNCLEAR
     bad = single[seen] < DOUBTFUL_WEIGHT
     if bad.any() and not bad.all() and bad.sum() <= len(seen) / 2:
         return LABEL

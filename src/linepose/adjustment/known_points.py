@@ -7,8 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linepose.arrays import Floats
+from linepose.errors import InputError
 
 _DOWN: Final = 2
+_ROUNDING: Final = 1e-9  # of the largest entry of an information
+_LARGEST: Final = 1e12  # 1/m^2: of a micrometre
 
 
 class Surface(Protocol):
@@ -59,6 +62,27 @@ class KnownPoints:
         """Of which points (M,) something is known that is theirs alone, and may contradict the rest."""
         return np.any(self.information != 0, axis=(1, 2)) & ~self.on_surface & (self.shifts == 0)
 
+    def checked(self, n_points: int) -> "KnownPoints":
+        """The same with zero where nothing is known; raises InputError for what is no position or information."""
+        shapes = np.shape(self.position_m), np.shape(self.information)
+        if shapes != ((n_points, 3), (n_points, 3, 3)):
+            raise InputError(
+                "known points",
+                f"shapes {shapes[0]} and {shapes[1]}",
+                f"({n_points}, 3) and ({n_points}, 3, 3)",
+                "give one row for each point of the survey, of zeros for one that is not known",
+            )
+        known = np.any(self.information != 0, axis=(1, 2))
+        good = (np.isfinite(self.position_m).all(axis=1) | ~known) & _is_information(self.information)
+        for point in np.flatnonzero(~good)[:1]:
+            raise InputError(
+                f"known points, point {point}",
+                f"position {self.position_m[point].tolist()} with information {self.information[point].tolist()}",
+                "finite numbers, symmetric, without negative eigenvalues, of sigmas of a micrometre or more",
+                "give 1 / sigma^2 (1/m^2) of every known coordinate on the diagonal",
+            )
+        return replace(self, position_m=np.where(known[:, None], self.position_m, 0.0))
+
     def select(self, points: NDArray[np.int64]) -> "KnownPoints":
         """The same of some of the points (K,)."""
         return replace(
@@ -94,3 +118,12 @@ class KnownPoints:
 def nothing_known(n_points: int) -> KnownPoints:
     """No knowledge of any of the points."""
     return KnownPoints(np.zeros((n_points, 3)), np.zeros((n_points, 3, 3)))
+
+
+def _is_information(matrices: Floats) -> NDArray[np.bool_]:
+    """Whether matrices (M, 3, 3) are information of a position."""
+    largest = np.abs(matrices).max(axis=(1, 2), initial=0.0)
+    good = np.asarray(largest <= _LARGEST)  # not of what is no number
+    scaled = np.where(good[:, None, None], matrices, 0.0) / np.where(good & (largest > 0), largest, 1.0)[:, None, None]
+    good &= np.abs(scaled - np.swapaxes(scaled, 1, 2)).max(axis=(1, 2), initial=0.0) <= _ROUNDING
+    return good & (np.linalg.eigvalsh(scaled)[:, 0] >= -_ROUNDING)

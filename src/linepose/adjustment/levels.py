@@ -6,7 +6,7 @@ Navigation errors are scaled in units of the reported sigmas, pixels in the came
 from typing import Final, NamedTuple
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from linepose.arrays import Floats
 from linepose.settings import Settings
@@ -34,6 +34,15 @@ N_LEVELS: Final = len(LEVEL_NAMES)
 START: Final = Levels(0.5, 0.5, 0.5, 0.5, 0.5, 60.0, 1.0)
 MEDIAN: Final = Levels(0.5, 0.5, 0.5, 0.5, 0.5, 300.0, 1.0)
 LOG_SIGMA: Final = Levels(1.5, 1.5, 1.5, 1.5, 0.7, 2.0, 0.5)
+LEAST, LARGEST = 1e-6, 1e6  # that a level or its median can be given as
+_LEAST_LOG_SIGMA, _LARGEST_LOG_SIGMA = 1e-3, 10.0
+
+
+def check_levels(levels: Levels) -> Levels:
+    """The levels; raises ValueError for one that no error has, in words for people."""
+    if not all(LEAST <= one <= LARGEST for one in levels):
+        raise ValueError(f"{N_LEVELS} numbers from {LEAST:g} to {LARGEST:g}")
+    return levels
 
 
 class LevelPriors(Settings):
@@ -41,6 +50,18 @@ class LevelPriors(Settings):
 
     median: Levels = Field(MEDIAN, description=f"Median of each: {', '.join(LEVEL_NAMES)}.")
     log_sigma: Levels = Field(LOG_SIGMA, description="Sigma of the natural logarithm of each, in the same order.")
+
+    @field_validator("median")
+    @classmethod
+    def _are_levels(cls, median: Levels) -> Levels:
+        return check_levels(median)
+
+    @field_validator("log_sigma")
+    @classmethod
+    def _are_sigmas(cls, log_sigma: Levels) -> Levels:
+        if not all(_LEAST_LOG_SIGMA <= one <= _LARGEST_LOG_SIGMA for one in log_sigma):
+            raise ValueError(f"{N_LEVELS} numbers from {_LEAST_LOG_SIGMA:g} to {_LARGEST_LOG_SIGMA:g}")
+        return log_sigma
 
     def log_density(self, log_levels: Floats, estimated: Floats) -> float:
         """Logarithm of the density of the logarithms of the levels (7,), but for a constant; those `estimated` count.

@@ -12,9 +12,10 @@ from linepose.adjustment.process import ErrorStructure
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.geometry.camera import Camera
+from linepose.survey.covariance_rule import NEGATIVE, correlations
 from linepose.survey.observations import Survey
 
-NEGATIVE_EIGENVALUE: Final = 1e-9  # of the largest: rounding in a file, not an invalid covariance
+_ONE_CLOCK: Final = "correct the time stamps: those of all views are of one clock"
 _RAYS: Final = 2  # that a point needs, of which nothing else is known
 
 
@@ -60,7 +61,7 @@ def measurements_from_survey(
     A point on a single ray can follow any pose without error: it says nothing, and is left out. Raises InputError where
     no point is left, a body pose or covariance is of no use, or the times of two views overlap.
     """
-    known = known or nothing_known(survey.n_points)
+    known = nothing_known(survey.n_points) if known is None else known.checked(survey.n_points)
     seen = np.isfinite(survey.u_px)
     usable = (seen.sum(axis=0) >= _RAYS) | (seen.any(axis=0) & known.any)
     row, column = np.nonzero(seen & usable)
@@ -117,15 +118,15 @@ def symmetric_roots(covariances: Floats, numbers: NDArray[np.int64]) -> Floats:
     """
     variance = np.diagonal(covariances, axis1=1, axis2=2)
     sigma = np.sqrt(np.maximum(variance, 0.0))
-    safe = np.where(sigma > 0, sigma, 1.0)
-    scaled = covariances / safe[:, None, :] / safe[:, :, None]
+    scaled = correlations(covariances)
     values, vectors = np.linalg.eigh((scaled + np.swapaxes(scaled, 1, 2)) / 2)
-    negative = np.any(variance < 0, axis=1) | (values[:, 0] < -NEGATIVE_EIGENVALUE * np.maximum(values[:, -1], 1.0))
+    negative = values[:, 0] < -NEGATIVE
     if np.any(negative):
         first = int(np.argmax(negative))
         raise InputError(
             f"observation {numbers[first]}",
-            f"a covariance with variances {variance[first].tolist()} that is not positive semidefinite",
+            f"a covariance with variances {', '.join(f'{one:.3g}' for one in variance[first])} whose correlations have "
+            f"the eigenvalue {values[first, 0]:.3g}",
             "a symmetric matrix without negative eigenvalues",
             "check which columns of the navigation record are read",
         )
@@ -139,9 +140,10 @@ def _in_order_of_time(
     """Order (L,) of the measurements, and the rows (N,) of the survey in that order; as given without times."""
     if not timed:
         return np.arange(len(row)), np.unique(row)
-    rows = np.unique(row)
-    first = np.array([time_us[row == r].min() for r in rows])
-    last = np.array([time_us[row == r].max() for r in rows])
+    rows, of_row = np.unique(row, return_inverse=True)
+    first, last = np.full(len(rows), np.iinfo(np.int64).max), np.full(len(rows), np.iinfo(np.int64).min)
+    np.minimum.at(first, of_row, time_us)
+    np.maximum.at(last, of_row, time_us)
     by_time = np.lexsort((last, first))
     rows, first, last = rows[by_time], first[by_time], last[by_time]
     overlap = np.flatnonzero(first[1:] < last[:-1])
@@ -151,7 +153,7 @@ def _in_order_of_time(
             f"observations {one} and {two}",
             "times that repeat or run back from one to the other",
             "one view after the other",
-            "correct the time stamps, or leave one of the two out",
+            "correct the time stamps, or leave one of the two out" if len(overlap) == 1 else _ONE_CLOCK,
         )
     rank = _positions(rows, survey.n_observations)[row]
     return np.lexsort((time_us, rank)), rows

@@ -24,8 +24,7 @@ _TRIED: Final = 1500
 def body_rates(body_pose: Floats, time_us: NDArray[np.int64], view: NDArray[np.int64]) -> Floats:
     """Rates (L, 6) of position (m/s) and Euler angles (rad/s), one a view; NaN where a view's times do not differ."""
     rates = np.full(body_pose.shape, np.nan)
-    for one in np.unique(view):
-        rows = np.flatnonzero(view == one)
+    for rows in _rows_of_views(view):
         time_s = (time_us[rows] - time_us[rows].min()) * 1e-6
         centred = time_s - time_s.mean()
         spread = centred @ centred
@@ -38,7 +37,7 @@ def body_rates(body_pose: Floats, time_us: NDArray[np.int64], view: NDArray[np.i
 
 def line_period_s(time_us: NDArray[np.int64], view: NDArray[np.int64]) -> float | None:
     """Duration of a line (s), the longest of which differences of time within views are multiples; None if of none."""
-    differences = np.concatenate([_differences(np.sort(time_us[view == one])) for one in np.unique(view)])
+    differences = np.concatenate([_differences(np.sort(time_us[rows])) for rows in _rows_of_views(view)])
     differences = differences[:: max(1, len(differences) // _MOST_DIFFERENCES)]
     if len(differences) < _FEWEST_DIFFERENCES:
         return None
@@ -48,6 +47,12 @@ def line_period_s(time_us: NDArray[np.int64], view: NDArray[np.int64]) -> float 
         return None
     near = periods[good[0]] * np.linspace(0.97, 1.0, 301)
     return float(near[int(np.argmax(_coherence(differences, near)))]) * 1e-6
+
+
+def _rows_of_views(view: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Rows of each view, in one sort."""
+    order = np.argsort(view, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(view[order])) + 1)
 
 
 def _coherence(differences: Floats, periods: Floats) -> Floats:

@@ -3,10 +3,10 @@
 from typing import Final
 
 import numpy as np
-from pydantic import Field, NonNegativeInt, PositiveFloat
+from pydantic import Field, NonNegativeInt, PositiveFloat, field_validator
 
 from linepose.adjustment.hand_measured import covariance_of_sigmas
-from linepose.adjustment.levels import START, LevelPriors, Levels
+from linepose.adjustment.levels import START, LevelPriors, Levels, check_levels
 from linepose.arrays import Floats
 from linepose.settings import Settings
 
@@ -27,14 +27,19 @@ class AdjustmentSection(Settings):
     priors: LevelPriors = Field(LevelPriors(), description="Log-normal priors of the levels.")
     start: Levels = Field(START, description="Levels to start from, in the order of the priors.")
     line_period_s: PositiveFloat | None = Field(
-        None, description="Duration of a line (s); what time stamps are multiples of if null."
+        None, le=10.0, description="Duration of a line (s); what time stamps are multiples of if null."
     )
     tails: bool = Field(
         True, description="Whether views and single measurements may err far more than the rest, where the data say so."
     )
-    n_draws: int = Field(200, ge=10, le=100_000, description="Draws of the levels.")
-    n_samples: int = Field(2000, ge=1, le=10_000_000, description="Draws of the pose.")
+    n_draws: int = Field(200, ge=10, le=10_000, description="Draws of the levels.")
+    n_samples: int = Field(2000, ge=10, le=1_000_000, description="Draws of the pose.")
     max_rounds: int = Field(12, ge=1, le=10_000, description="Rounds of Gauss-Newton and levels in turn.")
+
+    @field_validator("start")
+    @classmethod
+    def _starts_at_levels(cls, start: Levels) -> Levels:
+        return check_levels(start)
 
 
 class AdjustmentSettings(AdjustmentSection):

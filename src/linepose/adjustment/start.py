@@ -10,7 +10,7 @@ import numpy as np
 
 from linepose.adjustment.measurements import Measurements
 from linepose.arrays import Floats
-from linepose.errors import EstimationError
+from linepose.errors import EstimationError, InputError
 from linepose.geometry import camera as cameras
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera
@@ -26,13 +26,24 @@ _DEPTHS: Final = np.geomspace(0.3, 3000.0, 81)  # of the ground below the lowest
 
 
 def start_points(measurements: Measurements, camera: Camera, pose: Floats) -> Floats:
-    """Points (K, 3) at a camera pose (6,): feet of their rays where the camera looks down, else where rays meet."""
+    """Points (K, 3) at a camera pose (6,): feet of their rays where the camera looks down, else where rays meet.
+
+    Raises InputError for a camera that has no rays.
+    """
     body_from_camera = rotations.matrix_from_rotation_vector(pose[3:])
     body = rotations.matrix_from_euler(measurements.body_pose[:, 3:])
     centre, direction = cameras.rays(
         camera, body_from_camera, pose[:3], body, measurements.body_pose[:, :3], measurements.u_px
     )
-    direction = direction / np.linalg.norm(direction, axis=-1, keepdims=True)
+    length = np.linalg.norm(direction, axis=-1, keepdims=True)
+    if not np.all(np.isfinite(length)):
+        raise InputError(
+            "camera",
+            "intrinsic parameters whose rays are no numbers",
+            "those of a camera that has seen these pixels",
+            "correct focal_length_m, pixel_pitch_m, principal_point_px, k1 and k2",
+        )
+    direction = direction / length
     if not looks_down(measurements, pose):
         return _met(measurements, centre, direction)
     return _feet(measurements, centre, direction)

@@ -9,5 +9,11 @@ DISAGREEMENT_SIGMAS: Final = 3.0  # of data and hand measurement
 CLOCK: Final = "clock"
 LABEL: Final = "label"
 JUMP: Final = "jump"
-CAUSES: Final = {CLOCK: "its clock", LABEL: "labels", JUMP: "a jump of the navigation"}
+UNCLEAR: Final = "unclear"
+CAUSES: Final = {
+    CLOCK: "its clock",
+    LABEL: "labels",
+    JUMP: "a jump of the navigation",
+    UNCLEAR: "too few points tell why",
+}
 DOUBTFUL_WEIGHT: Final = 0.25  # of a view or a measurement: its errors are twice what the levels say

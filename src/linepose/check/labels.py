@@ -42,8 +42,11 @@ def sensor_findings(points: pd.DataFrame, n_pixels: int) -> list[Finding]:
     return [ok(_SUBJECT, f"pixels {u_px.min():.0f} to {u_px.max():.0f} of {n_pixels}")]
 
 
-def count_findings(points: pd.DataFrame, minimum_observations: int) -> list[Finding]:
-    """How many observations there are, how many points each has, and how often each point was seen."""
+def count_findings(points: pd.DataFrame, minimum_observations: int | None) -> list[Finding]:
+    """How many observations there are, how many points each has, and how often each point was seen.
+
+    `minimum_observations` is that of the outlier removal, None for a noise model that removes none.
+    """
     per_view = points.groupby("observation")["point"].nunique()
     per_point = points.groupby("point")["observation"].nunique()
     findings = [
@@ -66,7 +69,7 @@ def count_findings(points: pd.DataFrame, minimum_observations: int) -> list[Find
     if len(alone):
         found = f"point {in_words(alone)}: seen once only, so it says nothing"
         findings.append(warning(_SUBJECT, found, "label it in other observations too, or check its name"))
-    if len(per_view) <= minimum_observations:
+    if minimum_observations is not None and len(per_view) <= minimum_observations:
         findings.append(
             warning(
                 _SUBJECT,

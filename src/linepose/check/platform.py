@@ -29,8 +29,8 @@ from linepose.config.project import Project
 from linepose.config.study import check_study
 from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError, LineposeError
+from linepose.estimation.noise_models import noise_model
 from linepose.experiments.registry import compared_platforms, experiment_faults
-from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.navigation.covariance_file import read_covariances
 from linepose.inputs.number_files import read_numbers
 from linepose.inputs.source import LabelledViewsSection, ScansSection
@@ -142,14 +142,15 @@ def recorded_findings(project: Project, platform: str, root: Path) -> tuple[list
         more, points = scan_findings(source, folder, n_pixels)
     findings += more
     if points is not None:
-        findings += count_findings(points, project.study.outliers.minimum_observations)
+        removes = noise_model(settings.noise_model).removes_outliers
+        findings += count_findings(points, project.study.outliers.minimum_observations if removes else None)
     more, recorded = _navigation_findings(settings, folder, points)
     findings += more
     if any(finding.level == Level.ERROR for finding in findings) or recorded.points is None:
         return findings, None
     try:
         observations = with_navigation(recorded.points, settings, folder)
-        check_determined(survey_from_table(observations), N_PARAMETERS)
+        check_determined(survey_from_table(observations), settings.n_unknown)
     except InputError as fault:
         return [*findings, of_fault("observations", fault)], None
     return findings, observations

@@ -24,6 +24,7 @@ from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, noise_model
 from linepose.geometry.camera import Camera
+from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, faults_of, validated
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
@@ -144,6 +145,11 @@ class Platform(Settings):
         from linepose.likelihood.prior import pose_prior
 
         return pose_prior(self.start_pose(), self.start_covariance())
+
+    @property
+    def n_unknown(self) -> int:
+        """Parameters of the pose that the data alone must tell: none where the hand measurement is a prior."""
+        return 0 if self.prior == "hand_measured" else N_PARAMETERS
 
     def pose_prior(self) -> "PosePrior | None":
         """The pose's prior; None where the data decide alone."""

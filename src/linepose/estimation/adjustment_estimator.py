@@ -18,7 +18,8 @@ from linepose.survey.observations import Survey
 
 GAUSS_NEWTON = "gauss_newton"
 _FEWER_DRAWS = 60  # of the levels, where many estimates are made
-_FEW = {"n_draws": 10, "n_samples": 10}  # where only the pose is asked for
+_FEWEST = 10
+_FEW = {"n_draws": _FEWEST, "n_samples": _FEWEST}  # where only the pose is asked for
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class AdjustmentEstimator(Estimator):
     def estimate(self, start: ArrayLike, seed: int | None = None) -> Estimate:
         """The adjusted pose from a start pose (6,) with the posterior's covariance; of fewer draws without a seed."""
         if seed is None:
-            settings = self.settings.replaced(n_draws=min(_FEWER_DRAWS, self.settings.n_draws), n_samples=1)
+            settings = self.settings.replaced(n_draws=min(_FEWER_DRAWS, self.settings.n_draws), n_samples=_FEWEST)
             return self.noted(replace(self, settings=settings).adjusted(start))
         return self.noted(self.adjusted(start, seed))
 

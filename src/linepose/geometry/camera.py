@@ -22,10 +22,10 @@ class CameraSigmas(Settings):
     0.0001
     """
 
-    u_px: PositiveFloat = Field(0.5, description="Of a point's position along the scan line (px).")
-    v_px: PositiveFloat = Field(0.5, description="Of a point's position across the scan line (px).")
-    principal_point_px: NonNegativeFloat = Field(2.0, description="Of the principal point (px).")
-    focal_length_m: NonNegativeFloat = Field(1e-4, description="Of the focal length (m).")
+    u_px: PositiveFloat = Field(0.5, ge=1e-6, le=1e6, description="Of a point's position along the scan line (px).")
+    v_px: PositiveFloat = Field(0.5, ge=1e-6, le=1e6, description="Of a point's position across the scan line (px).")
+    principal_point_px: NonNegativeFloat = Field(2.0, le=1e6, description="Of the principal point (px).")
+    focal_length_m: NonNegativeFloat = Field(1e-4, le=1e3, description="Of the focal length (m).")
     k1: NonNegativeFloat = Field(0.0, description="Of the first radial distortion coefficient (no unit).")
     k2: NonNegativeFloat = Field(0.0, description="Of the second radial distortion coefficient (no unit).")
 

@@ -65,3 +65,16 @@ def draws(adjusted: AdjustedEvidence) -> Check:
         "Raise adjustment.n_draws in config/config.yaml and run again.",
         "the draws of the levels are too few",
     )
+
+
+def times(adjusted: AdjustedEvidence) -> Check:
+    """Whether drift of the navigation is allowed for."""
+    if adjusted.drift_known:
+        return Check("Times", Level.GOOD, "Drift of the navigation is estimated from the times.")
+    return Check(
+        "Times",
+        Level.CARE,
+        "The measurements have no times that differ: drift of the navigation is not known and not allowed for.",
+        "Give the times (time_us): where the navigation drifts the sigmas are too small without them.",
+        "without times drift of the navigation is not allowed for",
+    )

@@ -11,13 +11,22 @@ from linepose.arrays import Floats
 from linepose.config.platform import Platform
 from linepose.config.project import Project
 from linepose.errors import InputError
-from linepose.pipeline.calibrate import CalibrationSettings, calibrate, checked_rows
+from linepose.estimation.noise_models import noise_model
+from linepose.pipeline.calibrate import CalibrationSettings, calibrate
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.known_points import known_of_platform
 from linepose.pipeline.load import read_observations
 from linepose.pipeline.project_folder import find_project, load_platform_project
-from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
+from linepose.survey.covariance_rule import NEGATIVE, asymmetric, correlations, least_eigenvalue
+from linepose.survey.observations import (
+    COVARIANCE_COLUMNS,
+    COVARIANCE_INDICES,
+    EULER_COLUMNS,
+    OBSERVATIONS,
+    POSITION_COLUMNS,
+)
 from linepose.survey.point_names import WHAT, nameless, point_names
+from linepose.survey.rows import checked_rows
 
 
 def observations_from_arrays(
@@ -97,13 +106,20 @@ def observations_from_arrays(
     columns |= dict(zip(POSITION_COLUMNS, position.T, strict=True))
     columns |= dict(zip(EULER_COLUMNS, euler.T, strict=True))
     columns |= {name: matrices[:, i, j] for name, (i, j) in zip(COVARIANCE_COLUMNS, COVARIANCE_INDICES, strict=True)}
-    table = pd.DataFrame(columns).assign(nav_gap_s=0.0)
-    table = checked_rows(table)
+    table = checked_rows(pd.DataFrame(columns).assign(nav_gap_s=0.0), OBSERVATIONS.names)
     return table.sort_values(["observation", "point"], ignore_index=True)
 
 
 def _numbers(name: str, values: ArrayLike) -> Floats:
+    array = np.asarray(values)
+    if np.iscomplexobj(array):
+        raise InputError(name, "complex numbers", "an array of real numbers", "give the real ones")
+    if array.dtype.kind == "M":
+        remedy = "convert them with .astype('datetime64[us]').astype('int64')"
+        raise InputError(name, "dates", "an array of numbers", remedy)
     try:
+        if isinstance(values, np.ma.MaskedArray):
+            return np.ma.filled(values.astype(float), np.nan)
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         raise InputError(name, "text, or rows of different lengths", "an array of numbers", "correct it") from None
@@ -138,18 +154,15 @@ def _names(values: ArrayLike, count: int) -> np.ndarray:
 
 
 def _check_covariances(matrices: Floats) -> None:
-    scale = np.sqrt(np.abs(np.diagonal(matrices, axis1=1, axis2=2)))
-    for row in np.flatnonzero(~np.any(scale > 0, axis=1))[:1]:
+    for row in np.flatnonzero(~np.any(matrices != 0, axis=(1, 2)))[:1]:
         raise InputError(
             f"covariance, row {row}",
             "zero",
             "a covariance of north, east, down (m), roll, pitch, yaw (rad)",
             "give what the navigation system reports, or its data sheet",
         )
-    outer = np.where(scale > 0, scale, 1.0)[:, :, None] * np.where(scale > 0, scale, 1.0)[:, None, :]
-    correlation = matrices / outer
-    skewed = np.abs(correlation - np.swapaxes(correlation, 1, 2)).max(axis=(1, 2)) > 1e-9
-    negative = np.linalg.eigvalsh(correlation)[:, 0] < -1e-5
+    correlation = correlations(matrices)
+    skewed, negative = asymmetric(correlation), least_eigenvalue(correlation) < -NEGATIVE
     for row in np.flatnonzero(skewed | negative)[:1]:
         raise InputError(
             f"covariance, row {row}",
@@ -249,20 +262,16 @@ def calibrate_platform(platform: str, project: Path | str = ".") -> Calibration:
     settings, study = loaded.platforms[platform], loaded.study
     folder = recorded_folder(loaded, platform, find_project(project))
     observations = read_observations(settings, folder)
+    made = {"noise_model": settings.noise_model, "prior": settings.prior, "seed": study.seed}
+    if noise_model(settings.noise_model).removes_outliers:
+        made |= {"search": study.search, "sampling": study.sampling} | dict(study.outliers)
+    else:
+        made |= {"adjustment": study.adjustment}
     calibrated = calibrate(
         observations,
         settings.intrinsics(),
         settings.hand_measured,
-        CalibrationSettings(
-            noise_model=settings.noise_model,
-            prior=settings.prior,
-            threshold_px=study.outliers.threshold_px,
-            minimum_observations=study.outliers.minimum_observations,
-            search=study.search,
-            sampling=study.sampling,
-            adjustment=study.adjustment,
-            seed=study.seed,
-        ),
+        CalibrationSettings(**made),
         platform,
         known_points=known_of_platform(settings, folder, observations),
     )

@@ -5,11 +5,11 @@ same to the last bit.
 """
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 import pandas as pd
-from pydantic import Field, NonNegativeInt, PositiveFloat
+from pydantic import Field, NonNegativeInt, PositiveFloat, model_validator
 
 from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.settings import AdjustmentSection
@@ -19,7 +19,14 @@ from linepose.errors import InputError
 from linepose.estimation.adjustment_estimator import adjustment_estimator
 from linepose.estimation.diagnostics import diagnose_samples
 from linepose.estimation.estimator import Conditions
-from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, likelihood_of, noise_model
+from linepose.estimation.noise_models import (
+    DEFAULT,
+    MEANINGS,
+    NOISE_MODELS,
+    NoiseModelName,
+    likelihood_of,
+    noise_model,
+)
 from linepose.estimation.optimise import Search
 from linepose.estimation.outliers import OutlierSettings, outlier_table, reject_outliers, stage_observations
 from linepose.estimation.sampling import SamplingSettings, sample, stage_seed
@@ -41,19 +48,18 @@ from linepose.pipeline.stages import (
 )
 from linepose.settings import Settings
 from linepose.survey.hand_measured import HandMeasured
-from linepose.survey.observations import (
-    COVARIANCE_COLUMNS,
-    EULER_COLUMNS,
-    POSITION_COLUMNS,
-    Survey,
-    check_determined,
-    survey_from_table,
-)
+from linepose.survey.observations import OBSERVATIONS, Survey, check_determined, survey_from_table
 from linepose.survey.point_knowledge import PointKnowledge
-from linepose.survey.point_names import WHAT, nameless, point_names
+from linepose.survey.rows import check_time_units, checked_rows
 
-_NEEDED = ("observation", "point", "u_px", *POSITION_COLUMNS, *EULER_COLUMNS, *COVARIANCE_COLUMNS)
 _STAGE = "inliers"
+_KINDS: Final[dict[str, tuple[type, str]]] = {
+    "observations": (pd.DataFrame, "linepose.observations_from_arrays"),
+    "camera": (Camera, "linepose.Camera"),
+    "hand_measured": (HandMeasured, "linepose.HandMeasured"),
+}
+_OF_LIKELIHOODS: Final = ("threshold_px", "minimum_observations", "search", "sampling")
+_OF_ADJUSTMENT: Final = ("adjustment",)
 
 
 def _as_in(settings: type[Settings], key: str) -> Any:
@@ -63,6 +69,9 @@ def _as_in(settings: type[Settings], key: str) -> Any:
 
 class CalibrationSettings(Settings):
     """How a calibration is made; the defaults are those of config/config.yaml.
+
+    `threshold_px`, `minimum_observations`, `search` and `sampling` are of noise models with a likelihood, `adjustment`
+    of the adjustment: what the noise model makes no use of is refused.
 
     Examples
     --------
@@ -79,6 +88,22 @@ class CalibrationSettings(Settings):
     sampling: SamplingSettings = _as_in(Study, "sampling")
     adjustment: AdjustmentSection = _as_in(Study, "adjustment")
     seed: NonNegativeInt = _as_in(Study, "seed")
+
+    @model_validator(mode="after")
+    def _all_count(self) -> "CalibrationSettings":
+        removes = noise_model(self.noise_model).removes_outliers
+        of_others = _OF_ADJUSTMENT if removes else _OF_LIKELIHOODS
+        defaults = type(self).model_fields
+        for name in of_others:
+            if getattr(self, name) != defaults[name].default:
+                one_of = [one.name for one in NOISE_MODELS.values() if one.removes_outliers != removes]
+                raise InputError(
+                    f"CalibrationSettings: {name}",
+                    f"a value, of which the noise model {self.noise_model} makes no use",
+                    "none",
+                    f"leave it out, or set noise_model to {' or '.join(one_of)}",
+                )
+        return self
 
 
 def calibrate(
@@ -129,10 +154,11 @@ def calibrate(
     >>> calibration.pose.shape, calibration.matrix.shape
     ((6,), (4, 4))
     """
-    settings = settings or CalibrationSettings()
+    settings = CalibrationSettings() if settings is None else settings
+    _check_kinds(observations=observations, camera=camera, hand_measured=hand_measured, settings=settings)
     observations = _checked(observations, camera.n_pixels)
     survey = survey_from_table(observations)
-    check_determined(survey, N_PARAMETERS)
+    check_determined(survey, 0 if settings.prior == "hand_measured" else N_PARAMETERS)
     if noise_model(settings.noise_model).removes_outliers:
         made = _removed_and_sampled(survey, camera, hand_measured, settings)
     else:
@@ -187,19 +213,19 @@ def _removed_and_sampled(
     }
 
 
+def _check_kinds(**given: object) -> None:
+    """Raise InputError naming the first argument of `calibrate` that is of another kind."""
+    for name, value in given.items():
+        kind, makes = _KINDS.get(name, (CalibrationSettings, "linepose.CalibrationSettings"))
+        if not isinstance(value, kind):
+            raise InputError(name, f"a {type(value).__name__}", f"a {kind.__name__}", f"make it with {makes}")
+
+
 def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
     """The observations with the columns that may be left out; raises InputError."""
-    missing = [name for name in _NEEDED if name not in observations.columns]
-    if missing:
-        raise InputError(
-            "observations",
-            f"no column {', '.join(missing[:3])}" + (f" and {len(missing) - 3} more" if len(missing) > 3 else ""),
-            "observation, point, u_px, the body's pose and its covariance",
-            "make the table with linepose.observations_from_arrays",
-        )
-    if observations.empty:
-        raise InputError("observations", "no row", "one row a point seen", "add observations")
-    observations = checked_rows(observations)
+    missing = {"time_us": np.int64(0), "nav_gap_s": 0.0}
+    missing = {name: value for name, value in missing.items() if name not in observations.columns}
+    observations = checked_rows(observations.assign(**missing), OBSERVATIONS.names)
     off_line = np.flatnonzero(~observations["u_px"].between(-1.0, float(n_pixels)))
     if off_line.size:
         raise InputError(
@@ -208,30 +234,5 @@ def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:
             f"a pixel of the scan line, 0 to {n_pixels - 1}",
             "correct u_px, or n_pixels of the camera",
         )
-    if "time_us" not in observations.columns:
-        observations = observations.assign(time_us=np.zeros(len(observations), dtype=np.int64))
-    return observations if "nav_gap_s" in observations.columns else observations.assign(nav_gap_s=0.0)
-
-
-def checked_rows(observations: pd.DataFrame) -> pd.DataFrame:
-    """The observations with names of points as `point_names` has them.
-
-    Raises InputError naming the first row with something else than numbers, or that says a point of a view again.
-    """
-    numbers = observations[[name for name in _NEEDED if name != "point"]].apply(pd.to_numeric, errors="coerce")
-    wrong = ~np.isfinite(numbers.to_numpy(dtype=float))
-    column = numbers["observation"].to_numpy(dtype=float)
-    wrong[:, 0] |= (column < 0) | (column != np.floor(column))
-    faults = [(row, "point", WHAT) for row in nameless(observations["point"])[:1]]
-    for row, place in np.argwhere(wrong)[:1]:
-        what = "a finite number" if place else "a whole number, not negative"
-        faults.append((row, numbers.columns[place], what))
-    for row, name, what in sorted(faults)[:1]:
-        raise InputError(
-            f"observations, row {row}", f"{name} {observations[name].iloc[row]}", what, "correct or remove the row"
-        )
-    observations = observations.assign(point=point_names(observations["point"]))
-    for row in np.flatnonzero(observations.duplicated(["observation", "point"]))[:1]:
-        found = f"point {observations['point'].iloc[row]} of observation {observations['observation'].iloc[row]} again"
-        raise InputError(f"observations, row {row}", found, "each point once a view", "remove one of the rows")
+    check_time_units(observations)
     return observations

@@ -12,6 +12,7 @@ import pyarrow as pa
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.estimation.noise_models import noise_model
 from linepose.estimation.outliers import OUTLIERS, OutlierSettings, removal_order
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS, euler_covariance, euler_pose
@@ -82,7 +83,7 @@ class Calibration:
         return cls(results, hand, camera, threshold_px, platform.noise_model, stage, platform, data_folder)
 
     def __str__(self) -> str:
-        """The pose for people: one number a line with its sigma, then what was removed and the verdict."""
+        """The pose for people: one number a line with its sigma, then what it rests on and the verdict."""
         lines = [
             f"{name:8s}{value:10.4f} +- {sigma:.4f} {unit}"
             for name, value, sigma, unit in zip(
@@ -93,8 +94,12 @@ class Calibration:
                 strict=True,
             )
         ]
-        removed = ", ".join(map(str, self.outliers)) or "none"
-        return "\n".join([*lines, f"observations removed: {removed}", self.verdict().sentence])
+        return "\n".join([*lines, self._observations_in_words(), self.verdict().sentence])
+
+    def _observations_in_words(self) -> str:
+        if not noise_model(self.noise_model).removes_outliers:
+            return f"observations used: all {len(self.inliers)}, each with its weight"
+        return f"observations removed: {', '.join(map(str, self.outliers)) or 'none'}"
 
     @property
     def name(self) -> str:
@@ -190,7 +195,7 @@ class Calibration:
 
     @property
     def outliers(self) -> list[int]:
-        """Numbers of the observations that were removed, in that order."""
+        """Numbers of the observations that were removed, in that order; the adjustment removes none."""
         return removal_order(self.outlier_removal)
 
     @property

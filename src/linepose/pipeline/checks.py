@@ -43,13 +43,15 @@ class DoubtfulView:
 class AdjustedEvidence:
     """What the verdict on an adjustment rests on beside the rest.
 
-    least_eigenvalue: of the curvature in units of the normal equations; effective_draws, pareto_shape: of the levels.
+    least_eigenvalue: of the curvature in units of the normal equations; effective_draws, pareto_shape: of the levels;
+    drift_known: whether there are times, without which drift is not allowed for.
     """
 
     least_eigenvalue: float
     effective_draws: float
     pareto_shape: float
     doubtful: tuple[DoubtfulView, ...]
+    drift_known: bool = True
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from scipy.special import chdtri
 
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
-from linepose.pipeline.adjusted_schemas import VIEWS
+from linepose.pipeline.adjusted_schemas import LEVELS, VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence
 from linepose.pipeline.pose_tables import PoseNumber, rotation_vector_numbers
@@ -107,6 +107,7 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence | None:
     if not np.isfinite(chain["least_eigenvalue"]).any():
         return None
     views = results.table("adjusted_views", VIEWS)
+    levels = results.table("levels", LEVELS).set_index("level")
     doubtful = views[views["fault"] != ""]
     return AdjustedEvidence(
         float(chain["least_eigenvalue"].iloc[0]),
@@ -116,6 +117,7 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence | None:
             DoubtfulView(int(row["observation"]), float(row["weight"]), str(row["fault"]))
             for _, row in doubtful.iterrows()
         ),
+        drift_known=bool(levels.loc["drift", "value"] > 0),
     )
 
 

@@ -5,7 +5,6 @@ from pathlib import Path
 import pandas as pd
 
 from linepose.config.platform import Platform
-from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.labels import read_point_labels
 from linepose.inputs.labels.labelled_views import read_labelled_views, select_views
 from linepose.inputs.navigation import log_covariances, read_navigation
@@ -50,7 +49,7 @@ def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> p
     else:
         reported, place = read_reported(platform, folder), folder / source.views
     observations = associate_covariances(points, reported, navigation.maximum_gap_s)
-    check_determined(survey_from_table(observations), N_PARAMETERS, str(place))
+    check_determined(survey_from_table(observations), platform.n_unknown, str(place))
     return observations
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from linepose.pipeline.adjusted_checks import curvature, doubtful_views, draws
+from linepose.pipeline.adjusted_checks import curvature, doubtful_views, draws, times
 from linepose.pipeline.checks import (
     Check,
     Evidence,
@@ -50,7 +50,7 @@ def judge(evidence: Evidence) -> Verdict:
     else:
         adjusted = evidence.adjusted
         checks += [doubtful_views(evidence, adjusted), angular_diversity(evidence), curvature(adjusted)]
-        checks += [hand_measurement(evidence), draws(adjusted)]
+        checks += [hand_measurement(evidence), draws(adjusted), times(adjusted)]
     if evidence.truth_sigmas is not None:
         checks.append(truth(evidence, evidence.truth_sigmas))
     level = max(check.level for check in checks)

@@ -27,9 +27,11 @@ class HandMeasured(Settings):
 
     position_m: Triple = Field(description="Camera in the body frame: forward, right, down (m).")
     euler_deg: Triple = Field(description="Camera to body: roll, pitch, yaw, zyx intrinsic (deg).")
-    sigma_position_m: PositiveFloat = Field(0.1, description="One standard deviation of each coordinate (m).")
+    sigma_position_m: PositiveFloat = Field(
+        0.1, ge=1e-6, le=1e6, description="One standard deviation of each coordinate (m)."
+    )
     sigma_rotation_deg: PositiveFloat = Field(
-        2.0, description="One standard deviation of the turn about each of the body's axes (deg)."
+        2.0, ge=1e-6, le=1e6, description="One standard deviation of the turn about each of the body's axes (deg)."
     )
 
     @property

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.survey.point_names import Names, point_names
+from linepose.survey.rows import checked_rows
 from linepose.tables import floats, point_column, whole_numbers
 
 POSITION_COLUMNS: Final = ("north_m", "east_m", "down_m")
@@ -100,8 +101,9 @@ def survey_from_table(table: pd.DataFrame) -> Survey:
     """The survey that a table like results/NAME/observations.parquet holds, one row an observed point.
 
     The origin is the mean position rounded to whole metres; points are in the order of their names. Raises InputError
-    where observations times points are too many.
+    for rows that `checked_rows` refuses, and where observations times points are too many.
     """
+    table = checked_rows(table, OBSERVATIONS.names)
     numbers = np.sort(table["observation"].unique()).astype(np.int64)
     unique, column = np.unique(point_names(table["point"]), return_inverse=True)
     shape = (len(numbers), len(unique))
@@ -158,17 +160,19 @@ def table_from_survey(survey: Survey) -> pd.DataFrame:
 
 
 def check_determined(survey: Survey, n_parameters: int, place: str = "observations") -> None:
-    """Raise InputError, naming `place`, where the views are too few for the pose.
+    """Raise InputError, naming `place`, where the views are too few for the pose's `n_parameters` that are not known.
 
-    Each view of a point gives 2 equations, each point takes 3 unknowns.
+    Each view of a point gives 2 equations, each point takes 3 unknowns. Where the hand measurement is a prior, none of
+    the pose's parameters is unknown; one spare equation is then enough.
     """
+    needed = max(n_parameters, 1)
     views = np.isfinite(survey.u_px).sum(axis=0)
     used = views[views >= _RAYS_PER_POINT]
     spare = int(2 * used.sum() - 3 * len(used))
-    if spare < n_parameters:
+    if spare < needed:
         raise InputError(
             place,
             f"{spare} spare equations ({survey.n_observations} observations, {len(used)} points in two or more)",
-            f"at least {n_parameters}",
+            f"at least {needed}",
             "add observations, or label more points",
         )

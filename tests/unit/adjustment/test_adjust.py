@@ -199,7 +199,7 @@ def not_finite(survey):
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (negative, "observation 4: .* not positive semidefinite"),
+        (negative, "observation 4: .* correlations have the eigenvalue -1"),
         (overlapping, "observations 5 and 6: .* repeat or run back"),
         (not_finite, "observation 3, point 1: .* not finite"),
         (lambda survey: survey.select([4]), "no point that two of them have"),

@@ -8,7 +8,7 @@ import pytest
 from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.adjustment.faults import view_faults
 from linepose.adjustment.reprojection import reprojection
-from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL
+from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL, UNCLEAR
 from unit.adjustment import timed_survey
 
 QUICK = AdjustmentSettings(line_period_s=timed_survey.LINE_S, n_draws=20, n_samples=50)
@@ -63,3 +63,14 @@ def test_words_go_by_the_weight(survey):
     light = np.ones(12)
     light[3] = 0.99 * DOUBTFUL_WEIGHT
     assert [view for view, word in enumerate(view_faults(replace(found, view_weight=light), errors)) if word] == [3]
+
+
+def test_what_two_measurements_cannot_tell_is_unclear(survey):
+    u_px = survey.u_px.copy()
+    u_px[3, 2:] = np.nan
+    thin = replace(survey, u_px=u_px)
+    found = adjust(thin, timed_survey.CAMERA, timed_survey.POSE, settings=QUICK)
+    errors = reprojection(thin, timed_survey.CAMERA, found, timed_survey.LINE_S)
+    light = np.ones(12)
+    light[3] = 0.99 * DOUBTFUL_WEIGHT
+    assert view_faults(replace(found, view_weight=light), errors)[3] == UNCLEAR

@@ -233,7 +233,7 @@ def test_defaults_stand_once():
 
 
 def test_hand_measurement_without_sigmas_is_refused():
-    with pytest.raises(linepose.InputError, match="greater than 0"):
+    with pytest.raises(linepose.InputError, match="greater than or equal to"):
         linepose.HandMeasured(position_m=(0, 0, 0), euler_deg=(0, 0, 0), sigma_position_m=0.0)
 
 
@@ -295,5 +295,51 @@ def test_examples_run(page, myrobot, capsys):
     namespace: dict[str, object] = {}
     for block in blocks:
         exec(compile(block, page, "exec"), namespace)
-    assert "observations removed" in capsys.readouterr().out
+    assert "observations used: all 16, each with its weight" in capsys.readouterr().out
     assert namespace["body_from_camera"].shape == (4, 4)
+
+
+@pytest.mark.parametrize(
+    ("settings", "name"),
+    [
+        ({"threshold_px": 4.0}, "threshold_px"),
+        ({"minimum_observations": 5}, "minimum_observations"),
+        ({"search": linepose.Search(half_width_m=1.0)}, "search"),
+        ({"sampling": SHORT}, "sampling"),
+        ({"noise_model": "published", "adjustment": linepose.AdjustmentSection(n_draws=20)}, "adjustment"),
+    ],
+)
+def test_settings_that_the_noise_model_makes_no_use_of_are_refused(settings, name):
+    with pytest.raises(
+        linepose.InputError, match=rf"CalibrationSettings: {name}: .*leave it out, or set noise_model to"
+    ):
+        linepose.CalibrationSettings(**settings)
+
+
+@pytest.mark.parametrize("name", ["camera", "hand_measured", "settings"])
+def test_an_argument_of_another_kind_is_named(simulated, arrays, name):
+    given = {"camera": simulated.intrinsics(), "hand_measured": BY_HAND, "settings": QUICK} | {name: {"seed": 1}}
+    with pytest.raises(linepose.InputError, match=f"{name}: found a dict"):
+        linepose.calibrate(linepose.observations_from_arrays(**arrays), **given)
+
+
+def test_two_views_are_enough_with_the_hand_measurement(simulated, arrays):
+    few = linepose.observations_from_arrays(**arrays)
+    few = few[(few["observation"] <= 2) & (few["point"] <= 2)]
+    found = linepose.calibrate(few, simulated.intrinsics(), BY_HAND, QUICK)
+    assert np.all(np.isfinite(found.covariance))
+    with pytest.raises(linepose.InputError, match=r"3 spare equations .* at least 6"):
+        linepose.calibrate(few, simulated.intrinsics(), BY_HAND, QUICK.replaced(prior="none"))
+
+
+@pytest.mark.parametrize(
+    ("u_px", "told"),
+    [
+        (lambda u: u * 1j, "complex"),
+        (lambda u: np.ma.masked_array(u, np.arange(len(u)) == 3), "u_px, row 3"),
+        (lambda u: u.astype("datetime64[us]"), "dates"),
+    ],
+)
+def test_arrays_of_other_kinds_are_not_taken_for_numbers(arrays, u_px, told):
+    with pytest.raises(linepose.InputError, match=told):
+        linepose.observations_from_arrays(**(arrays | {"u_px": u_px(arrays["u_px"])}))

@@ -10,11 +10,10 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.navigation.usable_rows import usable_rows
 from linepose.inputs.number_files import check_microseconds, read_numbers
+from linepose.survey.covariance_rule import ASYMMETRY, NEGATIVE, correlations, least_eigenvalue
 from linepose.survey.navigation import NavigationCovariances
 
 _SIZE: Final = 12
-_ASYMMETRY: Final = 1e-9  # as a correlation: both halves are printed alike
-_NEGATIVE: Final = 1e-5  # as an eigenvalue of the correlations: what rounding to six printed digits may leave
 
 
 def read_covariances(path: Path, attitude_columns: Sequence[int]) -> NavigationCovariances:
@@ -41,16 +40,15 @@ def _check_covariance(matrix: Floats, names: Sequence[int], place: str) -> None:
     """Check a covariance (6, 6), whose rows and columns are `names` in the file's matrix."""
     if not np.all(np.isfinite(matrix)):
         raise InputError(place, "a covariance that is no number", "36 finite numbers", "remove or mend the row")
-    scale = np.sqrt(np.abs(np.diag(matrix)))
-    asymmetric = np.argwhere(np.abs(matrix - matrix.T) > _ASYMMETRY * np.outer(scale, scale))
-    if asymmetric.size:
-        i, j = asymmetric[0]
+    correlation = correlations(matrix)
+    differing = np.argwhere(np.abs(correlation - correlation.T) > ASYMMETRY)
+    if differing.size:
+        i, j = differing[0]
         at, mirrored = (names[i], names[j]), (names[j], names[i])
         found = f"covariance {matrix[i, j]:g} at {at} and {matrix[j, i]:g} at {mirrored}"
         raise InputError(place, found, "a symmetric matrix", "check the column order, or remove the row")
-    unit = np.where(scale > 0, scale, 1.0)
-    lowest = float(np.linalg.eigvalsh(matrix / np.outer(unit, unit))[0])
-    if lowest < -_NEGATIVE:
+    lowest = float(least_eigenvalue(correlation))
+    if lowest < -NEGATIVE:
         raise InputError(
             place,
             f"a covariance whose correlations have the eigenvalue {lowest:g}",

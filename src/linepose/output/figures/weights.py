@@ -7,15 +7,15 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from linepose.adjustment.thresholds import CAUSES, CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL
+from linepose.adjustment.thresholds import CAUSES, CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL, UNCLEAR
 from linepose.output.adjusted import without_adjustment
 from linepose.output.figures.entry import FigureEntry
-from linepose.output.figures.style import BLACK, BLUE, ORANGE, PURPLE, RED, WIDE_IN, blank_figure, styled
+from linepose.output.figures.style import BLACK, BLUE, GREY, ORANGE, PURPLE, RED, WIDE_IN, blank_figure, styled
 from linepose.pipeline.adjusted_schemas import MEASUREMENTS, VIEWS
 from linepose.pipeline.table_checks import usable_rows
 
 FAULTS: Final = {"": (BLUE, "as good as the rest")} | {
-    fault: (colour, CAUSES[fault]) for fault, colour in ((CLOCK, ORANGE), (LABEL, PURPLE), (JUMP, RED))
+    fault: (colour, CAUSES[fault]) for fault, colour in ((CLOCK, ORANGE), (LABEL, PURPLE), (JUMP, RED), (UNCLEAR, GREY))
 }
 _MOST_LABELS: Final = 20
 _ALIKE: Final = 0.005  # between weights that say nothing

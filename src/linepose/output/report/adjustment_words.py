@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from linepose.adjustment.thresholds import CLOCK, JUMP, LABEL
+from linepose.adjustment.thresholds import CLOCK, JUMP, LABEL, UNCLEAR
 from linepose.arrays import Floats
 from linepose.experiments.adjustment_beside import INLIERS
 from linepose.output.adjusted import common_share, set_in_words
@@ -24,6 +24,7 @@ FAULT_WORDS: Final = {
     CLOCK: "as if its clock were off",
     LABEL: "as if points were mislabelled",
     JUMP: "as if the navigation had jumped",
+    UNCLEAR: "with too few points to tell why",
 }
 _NOTABLE: Final = 0.05  # of the reported sigmas: below, a part of the error is not worth a word
 _LONG: Final = 0.5  # share of the drift that a survey has in common, from which a boresight has it in it
