@@ -6,6 +6,7 @@ import typer
 
 import linepose
 from linepose.cli import check, export, label, new, run, show, target
+from linepose.cli import map as map_command
 from linepose.cli.faults import OneLineFaults
 from linepose.cli.three_numbers import ThreeNumbers
 
@@ -16,7 +17,7 @@ app = typer.Typer(
     "The way of a platform: **target** prints a board, **new** writes its file, "
     "**label** marks the pattern's points where scans "
     "are not labelled yet, **check** tells what is wrong before a run, **run** calibrates, "
-    "**show** tells the pose, **export** writes it for the robot.",
+    "**show** tells the pose, **export** writes it for the robot, **map** puts scans on the map.",
     no_args_is_help=True,
     rich_markup_mode="markdown",
     add_completion=False,
@@ -47,3 +48,4 @@ app.command(name="check")(check.check)
 app.command(name="run")(run.run)
 app.command(name="show")(show.show)
 app.command(name="export")(export.export)
+app.command(name="map")(map_command.map_scans)

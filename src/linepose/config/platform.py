@@ -16,6 +16,7 @@ from pydantic import (
 )
 
 from linepose.arrays import Floats
+from linepose.config.map import MapSection
 from linepose.config.map_frame import MapFrameSection
 from linepose.config.names import check_name
 from linepose.config.outline import OutlineSection
@@ -113,6 +114,7 @@ class Platform(Settings):
     )
     points: PointsSection | None = Field(None, description="What is known of points beside their measurements.")
     map_frame: MapFrameSection | None = Field(None, description="Where the survey lies on the Earth.")
+    map: MapSection | None = Field(None, description="How `linepose map` puts scans on the map; for scans only.")
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
     experiments: dict[str, Any] = Field({}, description="Experiments on the accepted observations.")
 

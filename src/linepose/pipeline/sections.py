@@ -9,7 +9,7 @@ from linepose.pipeline.provenance import plain_settings
 PLATFORM: Final = "platform"
 OTHERS: Final = "others"
 GROUPS: Final = {"sections", "study"}
-_OF_NO_EFFECT: Final = {"description", "experiments", "outline", "map_frame"}  # on what is calibrated
+_OF_NO_EFFECT: Final = {"description", "experiments", "outline", "map_frame", "map"}  # on what is calibrated
 
 
 def platform_section(project: Project, platform: str) -> dict[str, Any]:

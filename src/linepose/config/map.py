@@ -1,0 +1,35 @@
+"""How scans are put on the map: the ground they show, and what is written."""
+
+from typing import Literal
+
+from pydantic import Field, NonNegativeFloat, model_validator
+
+from linepose.settings import Settings
+
+
+class MapSection(Settings):
+    """Scans on the map: the ground, and what is written beside each pixel's place and sigmas."""
+
+    ground: Literal["points", "height", "dem"] = Field(
+        "points",
+        description="What the rays meet: a plane through the estimated points, a flat ground of `height_m`, or the "
+        "elevation model `dem`.",
+    )
+    height_m: float | None = Field(None, description="Height of a flat ground (m): minus its down coordinate.")
+    dem: str | None = Field(
+        None,
+        description="Elevation model: path of a GeoTIFF below the data's folder, in the survey's projected system (or, "
+        "of a survey in local coordinates, without a system: east, north), heights in metres.",
+    )
+    sigma_ground_m: NonNegativeFloat | None = Field(
+        None,
+        description="Sigma of the ground's height (m). If not given, that of the points about their plane; 0.05 of a "
+        "height or an elevation model.",
+    )
+
+    @model_validator(mode="after")
+    def _has_its_ground(self) -> "MapSection":
+        for kind, key, value in (("height", "height_m", self.height_m), ("dem", "dem", self.dem)):
+            if (self.ground == kind) != (value is not None):
+                raise ValueError(f"{key} with `ground: {kind}`, and without it none")
+        return self

@@ -1,0 +1,1 @@
+"""Scans on the map: where each pixel lies on the ground, and how sure that is."""

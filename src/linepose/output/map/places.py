@@ -1,0 +1,168 @@
+"""Where the pixels of a scan lie on the map, and how sure that is, for any of its lines."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+from linepose.geometry.rotations import matrix_from_euler
+from linepose.inputs.navigation.record import nearest_rows
+from linepose.output.map.frame import SurveyMap
+from linepose.output.map.ground import Ground
+from linepose.output.map.kernel import FOUND, IN_HOLE, MET_TWICE, MISSED, OUTSIDE, on_the_ground
+from linepose.output.map.sources import (
+    SOURCES,
+    MountedCamera,
+    Source,
+    line_covariances,
+    normalised_pixels,
+    pixel_variances,
+    radii_of_95,
+)
+from linepose.survey.navigation import NavigationCovariances
+from linepose.survey.navigation_log import NavigationLog, PoseAt
+
+N_PLACE: Final = 3
+N_SIGMA: Final = 4
+STATES: Final = {"n_missed": MISSED, "n_outside": OUTSIDE, "n_in_hole": IN_HOLE, "n_met_twice": MET_TWICE}
+"""What is counted of pixels, and the kernel's number for it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Easting, northing, height (L, 3, P) in m, sigmas (L, 4, P) of them and the radius of 95 %, and states (L, P)."""
+
+    place_m: Floats
+    sigma_m: NDArray[np.float32]
+    state: NDArray[np.uint8]
+
+    @property
+    def is_found(self) -> NDArray[np.bool_]:
+        """Whether a pixel has a place; (L, P)."""
+        found: NDArray[np.bool_] = (self.state == FOUND) | (self.state == MET_TWICE)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Navigation:
+    """The body's poses, what is reported of their errors, and how far apart in time both may be."""
+
+    log: NavigationLog
+    pose_at: PoseAt
+    reported: NavigationCovariances
+    maximum_pose_gap_s: float
+    maximum_gap_s: float
+
+    def check(self, time_us: NDArray[np.int64], scan: str) -> None:
+        """Raise InputError naming the scan where its times (L,) are outside the log, or in a gap of it."""
+        known, log = self.log.time_us, self.log
+        outside = np.flatnonzero((time_us < known[0]) | (time_us > known[-1]))
+        if outside.size:
+            raise InputError(
+                f"{scan}, line {outside[0]}",
+                f"time {time_us[outside[0]]}, as of {outside.size} lines",
+                f"a time within the navigation log ({known[0]} to {known[-1]})",
+                "complete the navigation log, or correct the clocks",
+            )
+        after = np.searchsorted(known, time_us).clip(1, len(known) - 1)
+        gap_s = (known[after] - known[after - 1]) / 1e6
+        self._check_gap(gap_s, self.maximum_pose_gap_s, scan, "a gap of {:.3f} s in the navigation log", log.gap_key)
+        rows = nearest_rows(self.reported.time_us, time_us)
+        apart_s = np.abs(self.reported.time_us[rows] - time_us) / 1e6
+        found = "the nearest covariance {:.3f} s away"
+        self._check_gap(apart_s, self.maximum_gap_s, scan, found, "navigation.maximum_gap_s")
+
+    @staticmethod
+    def _check_gap(gap_s: Floats, most_s: float, scan: str, found: str, key: str) -> None:
+        worst = int(np.argmax(gap_s))
+        if gap_s[worst] > most_s:
+            remedy = f"complete the log, or raise {key}"
+            raise InputError(f"{scan}, line {worst}", found.format(gap_s[worst]), f"at most {most_s:g} s", remedy)
+
+
+@dataclass(frozen=True, eq=False)
+class ScanOnMap:
+    """All that the places of a scan's pixels rest on; `time_us` (L,) of its lines.
+
+    `correction` (6,), north, east, down (m), roll, pitch, yaw (rad), is added to the body's poses: what an adjustment
+    found there.
+    """
+
+    name: str
+    time_us: NDArray[np.int64]
+    mounted: MountedCamera
+    navigation: Navigation
+    ground: Ground
+    frame: SurveyMap
+    correction: Floats
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Lines and pixels."""
+        return len(self.time_us), self.mounted.camera.n_pixels
+
+    def bodies(self, first: int, end: int) -> tuple[Floats, Floats, Floats]:
+        """Positions (n, 3), Euler angles (n, 3) and reported covariances (n, 6, 6) of the body at these lines."""
+        times, reported = self.time_us[first:end], self.navigation.reported
+        position, euler = self.navigation.pose_at(self.navigation.log, times)
+        covariance = reported.covariance[nearest_rows(reported.time_us, times)]
+        return position + self.correction[:3], euler + self.correction[3:], covariance
+
+    def places(self, first: int, end: int, sources: Collection[Source] = SOURCES) -> Places:
+        """The places of all pixels of lines first to end (exclusive), with the sigmas that these sources cause."""
+        position, euler, reported = self.bodies(first, end)
+        body, mounted, ground = matrix_from_euler(euler), self.mounted, self.ground
+        centre = position + body @ mounted.pose[:3]
+        n, pixels = len(centre), self.shape[1]
+        place, sigma = np.empty((n, N_PLACE, pixels)), np.empty((n, N_SIGMA, pixels), dtype=np.float32)
+        state = np.empty((n, pixels), dtype=np.uint8)
+        on_the_ground(
+            centre,
+            body,
+            line_covariances(mounted, euler, reported, sources),
+            mounted.turn,
+            self._x,
+            pixel_variances(mounted, sources, ground.sigma_m),
+            ground.normal,
+            ground.offset,
+            ground.grid,
+            np.array(ground.corner_m),
+            np.array(ground.cell_m),
+            self._extremes_m,
+            self.frame.jacobian(centre[n // 2]),
+            radii_of_95(),
+            place,
+            sigma,
+            state,
+        )
+        return Places(self._on_map(place), sigma, state)
+
+    def _on_map(self, place: Floats) -> Floats:
+        """Easting, northing, height of east, north, up in the survey's own axes; (n, 3, P)."""
+        if not self.frame.is_tangent:
+            return place
+        east, north, up = np.moveaxis(place, 1, 0)
+        local = np.stack([north.ravel(), east.ravel(), -up.ravel()], axis=-1)
+        known = np.all(np.isfinite(local), axis=1)
+        local[known] = self.frame.places(local[known])
+        local[~known] = np.nan
+        return np.ascontiguousarray(np.moveaxis(local.reshape(*north.shape, 3), -1, 1))
+
+    @cached_property
+    def _x(self) -> Floats:
+        return normalised_pixels(self.mounted.camera)
+
+    @cached_property
+    def _extremes_m(self) -> Any:
+        return self.ground.extremes_m
+
+
+def count_states(state: NDArray[np.uint8]) -> dict[str, int]:
+    """How many pixels (L, P) have no place, and why, or meet the ground more than once."""
+    counts = np.bincount(state.ravel(), minlength=5)
+    return {name: int(counts[number]) for name, number in STATES.items()}

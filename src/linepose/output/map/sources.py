@@ -1,0 +1,125 @@
+"""What errs when a pixel is put on the map, and how much: the covariances that are carried to the ground."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import cache
+from typing import Final, Literal
+
+import numpy as np
+
+from linepose.adjustment.levels import Levels
+from linepose.arrays import Floats
+from linepose.geometry.camera import Camera, normalised_from_pixel, undistort
+from linepose.geometry.rotations import (
+    left_jacobian_so3,
+    matrix_from_euler,
+    matrix_from_rotation_vector,
+    skew,
+    small_rotation_by_euler,
+)
+
+Source = Literal["pose", "intrinsics", "navigation", "pixel", "ground"]
+SOURCES: Final[tuple[Source, ...]] = ("pose", "intrinsics", "navigation", "pixel", "ground")
+
+_STEP: Final = 1e-6  # of normalised coordinates and of distortion coefficients, for derivatives
+_HELD: Final = 0.95
+_RATIOS: Final = 257
+_ANGLES: Final = 720
+
+
+@dataclass(frozen=True, eq=False)
+class MountedCamera:
+    """A camera's intrinsics, its pose (6,) on the body and that pose's covariance (6, 6).
+
+    `levels` scale what the navigation reports, and the pixel's noise, where an adjustment has estimated them.
+    """
+
+    camera: Camera
+    pose: Floats
+    covariance: Floats
+    levels: Levels | None = None
+
+    @property
+    def turn(self) -> Floats:
+        """Rotation (3, 3) from camera to body."""
+        return matrix_from_rotation_vector(self.pose[3:])
+
+    def scaled(self, reported: Floats) -> Floats:
+        """Covariances (L, 6, 6) of the navigation's errors, where it reports these."""
+        if self.levels is None:
+            return reported
+        one = self.levels
+        scale = np.array([1.0, 1.0, 1.0, one.attitude, one.attitude, one.attitude])
+        return reported * np.outer(scale, scale) * (one.drift**2 + one.white**2 + one.constant**2)
+
+
+def pixel_variances(mounted: MountedCamera, sources: Collection[Source], sigma_ground_m: float) -> Floats:
+    """Variances (P, 3) of each pixel: of x and v of the normalised plane, and of the ground's height (m^2)."""
+    camera = mounted.camera
+    sigmas, focal = camera.sigmas, camera.focal_length_px
+    distorted = (np.arange(camera.n_pixels) - camera.principal_point_px) / focal
+    slope = (
+        undistort(distorted + _STEP, camera.k1, camera.k2) - undistort(distorted - _STEP, camera.k1, camera.k2)
+    ) / (2 * _STEP)
+    variances = np.zeros((camera.n_pixels, 3))
+    if "intrinsics" in sources:
+        variances[:, 0] += (slope * sigmas.principal_point_px / focal) ** 2
+        variances[:, 0] += (slope * distorted * sigmas.focal_length_m / camera.focal_length_m) ** 2
+        for k1, k2, sigma in ((_STEP, 0.0, sigmas.k1), (0.0, _STEP, sigmas.k2)):
+            higher = undistort(distorted, camera.k1 + k1, camera.k2 + k2)
+            lower = undistort(distorted, camera.k1 - k1, camera.k2 - k2)
+            variances[:, 0] += ((higher - lower) / (2 * _STEP) * sigma) ** 2
+    if "pixel" in sources:
+        along_px = sigmas.u_px * (1.0 if mounted.levels is None else mounted.levels.pixel)
+        variances[:, 0] += (slope * along_px / focal) ** 2
+        variances[:, 1] += (sigmas.v_px / focal) ** 2
+    if "ground" in sources:
+        variances[:, 2] = sigma_ground_m**2
+    return variances
+
+
+def line_covariances(
+    mounted: MountedCamera, euler_rad: Floats, reported: Floats, sources: Collection[Source]
+) -> Floats:
+    """Covariances (L, 6, 6) of the camera's centre (m) and of a small turn of it (rad), both in world axes.
+
+    `euler_rad` (L, 3): roll, pitch, yaw of the body; `reported` (L, 6, 6): what the navigation says of itself.
+    """
+    body = matrix_from_euler(euler_rad)
+    total = np.zeros((len(euler_rad), 6, 6))
+    if "pose" in sources:
+        by_pose = np.zeros_like(total)
+        by_pose[:, :3, :3] = body
+        by_pose[:, 3:, 3:] = body @ left_jacobian_so3(mounted.pose[3:])
+        total += by_pose @ mounted.covariance @ np.swapaxes(by_pose, -1, -2)
+    if "navigation" in sources:
+        turn = small_rotation_by_euler(euler_rad)
+        by_body = np.zeros_like(total)
+        by_body[:, :3, :3] = np.eye(3)
+        by_body[:, :3, 3:] = -skew(body @ mounted.pose[:3]) @ turn
+        by_body[:, 3:, 3:] = turn
+        total += by_body @ mounted.scaled(reported) @ np.swapaxes(by_body, -1, -2)
+    return total
+
+
+def normalised_pixels(camera: Camera) -> Floats:
+    """Normalised x (P,) of every pixel's centre."""
+    return normalised_from_pixel(camera, np.arange(camera.n_pixels))
+
+
+@cache
+def radii_of_95() -> Floats:
+    """Radius that holds 95 % of a normal error in the plane whose larger sigma is 1, by the ratio of the two (R,).
+
+    In polar coordinates: the share beyond a radius is the mean of `exp(-r^2 / 2 q)` over angles of the ellipse's
+    density, whose root is found by bisection.
+    """
+    ratio = np.linspace(0.0, 1.0, _RATIOS)[:, None]
+    angle = (np.arange(_ANGLES) + 0.5) * (np.pi / 2 / _ANGLES)
+    variance = np.cos(angle) ** 2 + (ratio * np.sin(angle)) ** 2  # along the direction of standard normal draws
+    low, high = np.full(_RATIOS, 1.9), np.full(_RATIOS, 2.5)
+    for _ in range(50):
+        middle = (low + high) / 2
+        beyond = np.mean(np.exp(-(middle[:, None] ** 2) / (2 * variance)), axis=1)
+        low, high = np.where(beyond > 1 - _HELD, middle, low), np.where(beyond > 1 - _HELD, high, middle)
+    return (low + high) / 2

@@ -1,0 +1,23 @@
+"""A scan's map in words."""
+
+from linepose.output.map.budget import ALL
+from linepose.output.map.platform_map import ScanMap
+
+_MM: int = 1000
+_MEANINGS = {
+    "n_missed": "miss the ground",
+    "n_outside": "leave the elevation model",
+    "n_in_hole": "end in a hole of it",
+    "n_met_twice": "meet the ground more than once",
+}
+
+
+def scan_sentence(made: ScanMap) -> str:
+    """One line: how sure the places are at the centre and at the edge, and what was counted of the pixels."""
+    whole = made.budget[made.budget["source"] == ALL].set_index("place")["radius_95_m"].astype(float)
+    centre, edge = whole["centre"] * _MM, whole["edge"] * _MM
+    told = [f"{made.name}: 95 % within {centre:.1f} mm at the centre, {edge:.1f} mm at the edge"]
+    told += [
+        f"{made.counts[key]} of {made.n_pixels} pixels {words}" for key, words in _MEANINGS.items() if made.counts[key]
+    ]
+    return "; ".join(told) + ("" if made.is_new else " (made before)")

@@ -1,0 +1,148 @@
+import dataclasses
+
+import numpy as np
+import pytest
+
+from linepose.errors import InputError
+from linepose.geometry.camera import rays, undistort
+from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
+from linepose.output.map.ground import Ground, flat_ground, plane_through
+from linepose.output.map.places import count_states
+from linepose.output.map.sources import SOURCES, radii_of_95
+from unit.output.map.made_up_scan import CAMERA, LEVELS, ORIGIN, POSE, POSE_COVARIANCE, scan
+
+
+def on_plane(centre, direction, normal, offset):
+    along = (offset - centre @ normal) / (direction @ normal)
+    return centre + along[..., None] * direction
+
+
+def test_places_are_where_the_rays_of_the_camera_model_meet_the_plane():
+    plane = plane_through(ORIGIN + np.array([[0, 0, 0], [4, 0, 0.3], [0, 4, -0.2]]), 0.01)
+    strip = scan(ground=plane)
+    found = strip.places(5, 9)
+    position, euler, _ = strip.bodies(5, 9)
+    pixel = np.broadcast_to(np.arange(CAMERA.n_pixels), (4, CAMERA.n_pixels))
+    centre, direction = rays(
+        CAMERA, strip.mounted.turn, POSE[:3], matrix_from_euler(euler)[:, None], position[:, None], pixel
+    )
+    north_east_down = on_plane(centre, direction, plane.normal, plane.offset)
+    expected = np.moveaxis(north_east_down[..., [1, 0, 2]] * [1, 1, -1], -1, 1)
+    np.testing.assert_allclose(found.place_m, expected, atol=2e-8)
+    assert found.is_found.all()
+
+
+def drawn(strip, source, line, pixels, rng, n):
+    """Places (n, P, 3) east, north, up of pixels of a line whose errors of one source, or all, are drawn."""
+    camera, (position, euler, reported) = strip.mounted.camera, (one[0] for one in strip.bodies(line, line + 1))
+
+    def normal(of, *shape):
+        return rng.normal(size=shape) if source in (of, "all") else np.zeros(shape)
+
+    pose = POSE + normal("pose", n, 6) @ np.linalg.cholesky(POSE_COVARIANCE).T
+    body_error = normal("navigation", n, 6) @ np.linalg.cholesky(strip.mounted.scaled(reported[None])[0]).T
+    of_camera, s = normal("intrinsics", n, 4, 1), camera.sigmas
+    centre_px = camera.principal_point_px + of_camera[:, 0] * s.principal_point_px
+    focal_px = (camera.focal_length_m + of_camera[:, 1] * s.focal_length_m) / camera.pixel_pitch_m
+    along = pixels + normal("pixel", n, len(pixels)) * s.u_px * strip.mounted.levels.pixel
+    k1, k2 = camera.k1 + of_camera[:, 2] * s.k1, camera.k2 + of_camera[:, 3] * s.k2
+    x = undistort((along - centre_px) / focal_px, k1, k2)
+    v = normal("pixel", n, len(pixels)) * s.v_px / camera.focal_length_px
+    body, turn = matrix_from_euler(euler + body_error[:, 3:]), matrix_from_rotation_vector(pose[:, 3:])
+    centre = position + body_error[:, :3] + np.einsum("nij,nj->ni", body, pose[:, :3])
+    direction = np.einsum("nij,njk,npk->npi", body, turn, np.stack([x, v, np.ones_like(x)], axis=-1))
+    down = strip.ground.offset + normal("ground", n, 1) * strip.ground.sigma_m
+    reach = (-down - centre[:, None, 2]) / direction[..., 2]
+    return (centre[:, None] + reach[..., None] * direction)[..., [1, 0, 2]] * [1, 1, -1]
+
+
+@pytest.mark.parametrize("source", [*SOURCES, "all"])
+def test_sigmas_are_those_of_drawn_errors(source):
+    strip, pixels = scan(levels=LEVELS), np.array([0, 31, 59])
+    sigma = strip.places(7, 8, SOURCES if source == "all" else [source]).sigma_m[0][:, pixels]
+    draws = drawn(strip, source, 7, pixels, np.random.default_rng(3), 20_000)
+    spread = draws.std(axis=0).T
+    np.testing.assert_allclose(sigma[:2], spread[:2], rtol=0.05)  # the spread's own sigma is 0.5 %
+    np.testing.assert_allclose(sigma[2], spread[2], rtol=0.05, atol=1e-7)
+    off = np.linalg.norm((draws - draws.mean(axis=0))[..., :2], axis=-1)
+    np.testing.assert_allclose(np.quantile(off, 0.95, axis=0), sigma[3], rtol=0.05)
+
+
+def test_radius_of_95_percent_is_known_at_both_ends():
+    np.testing.assert_allclose(radii_of_95()[[0, -1]], [1.959964, 2.447747], rtol=1e-3)
+
+
+def test_variances_of_the_sources_add_up():
+    strip = scan()
+    parts = sum(strip.places(0, 2, [source]).sigma_m[:, :3].astype(float) ** 2 for source in SOURCES)
+    np.testing.assert_allclose(np.sqrt(parts), strip.places(0, 2).sigma_m[:, :3], rtol=1e-5)
+
+
+def test_a_correction_moves_the_body():
+    moved = scan(correction=np.array([0.1, -0.2, 0.0, 0.0, 0.0, 0.0])).places(0, 3).place_m
+    expected = np.broadcast_to([[-0.2], [0.1], [0.0]], (3, 3, 60))
+    np.testing.assert_allclose(moved - scan().places(0, 3).place_m, expected, atol=1e-8)
+
+
+def hilly(heights, cell=0.05, corner=(20.0, -20.0)):
+    return Ground(
+        0.03,
+        np.array([0.0, 0.0, -1.0]),
+        0.0,
+        np.asarray(heights, dtype=np.float32),
+        (ORIGIN[0] + corner[0], ORIGIN[1] + corner[1]),
+        (cell, cell),
+    )
+
+
+def test_a_flat_elevation_model_is_the_flat_ground():
+    on_grid, flat = scan(ground=hilly(np.full((800, 800), 42.0))).places(0, 4), scan().places(0, 4)
+    np.testing.assert_allclose(on_grid.place_m, flat.place_m, atol=1e-6)
+    np.testing.assert_allclose(on_grid.sigma_m, flat.sigma_m, rtol=1e-5)
+
+
+def test_a_sloping_elevation_model_is_the_plane():
+    north, east = 20.0 - 0.05 * np.arange(800)[:, None], -20.0 + 0.05 * np.arange(800)
+    plane = plane_through(ORIGIN + np.array([[0, 0, 0], [4, 0, -0.4], [0, 4, 0.8]]), 0.03)
+    heights = 42.0 + 0.1 * north - 0.2 * east
+    on_grid, on_plane_ = scan(ground=hilly(heights)).places(0, 4), scan(ground=plane).places(0, 4)
+    np.testing.assert_allclose(on_grid.place_m, on_plane_.place_m, atol=2e-5)  # heights are kept in four bytes
+    np.testing.assert_allclose(on_grid.sigma_m, on_plane_.sigma_m, rtol=2e-3)
+
+
+def test_holes_edges_and_rays_that_miss_are_counted():
+    heights = np.full((800, 800), 42.0)
+    heights[395:405] = np.nan
+    assert count_states(scan(ground=hilly(heights)).places(0, 40).state)["n_in_hole"] > 0
+    beside = scan(ground=hilly(np.full((800, 410), 42.0))).places(0, 1)
+    assert 0 < count_states(beside.state)["n_outside"] < CAMERA.n_pixels
+    assert np.array_equal(np.isnan(beside.place_m[:, 0]), beside.state > 0)
+    assert count_states(scan(ground=flat_ground(50.0)).places(0, 1).state)["n_missed"] == CAMERA.n_pixels
+
+
+def test_a_ray_that_passes_a_wall_ends_at_it_and_is_counted():
+    flat = scan().places(0, 1).place_m[0]
+    heights = np.full((800, 800), 42.0)
+    wall = 41  # column of a thin wall two metres high
+    first, last = flat[1, 0], flat[1, -1]  # northing of the line's ends
+    column = int((flat[0, wall] - ORIGIN[1] + 20.0) / 0.05)
+    heights[:, column - 1 : column + 2] += 2.0
+    found = scan(ground=hilly(heights)).places(0, 1)
+    assert first != last
+    assert count_states(found.state)["n_met_twice"] > 0
+    assert np.nanmax(found.place_m[0, 2]) > 42.5
+
+
+def test_lines_outside_the_log_are_told_with_their_scan():
+    strip = scan()
+    with pytest.raises(InputError, match=r"strip, line 0: found time .*, as of 40 lines, expected a time within"):
+        strip.navigation.check(strip.time_us + 10**9, "strip")
+    thin = dataclasses.replace(strip.navigation, maximum_pose_gap_s=0.01)
+    with pytest.raises(InputError, match=r"a gap of 0\.050 s in the navigation log"):
+        thin.check(strip.time_us, "strip")
+    strip.navigation.check(strip.time_us, "strip")
+
+
+def test_points_on_a_line_span_no_plane():
+    with pytest.raises(InputError, match="3 points on a line"):
+        plane_through([[0, 0, 0], [1, 1, 0], [2, 2, 0]])
