@@ -23,6 +23,7 @@ def test_files_hold_the_places_of_all_blocks(tmp_path, n_cores):
     np.testing.assert_allclose(extent.corners_m[1], whole.place_m[:, :2].max(axis=(0, 2)))
 
 
+@pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_rasterio_reads_the_places_by_their_header(tmp_path):
     import rasterio
 
