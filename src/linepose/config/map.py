@@ -23,7 +23,7 @@ class MapSection(Settings):
     )
     sigma_ground_m: NonNegativeFloat | None = Field(
         None,
-        description="Sigma of the ground's height (m). If not given, that of the points about their plane; 0.05 of a "
+        description="Sigma of the ground's height (m). If not given, that of the points' plane; 0.05 of a "
         "height or an elevation model.",
     )
 

@@ -94,4 +94,5 @@ def ground_of(calibration: Calibration, section: "MapSection", frame: "SurveyMap
     down = list(POSITION_COVARIANCE_INDICES).index((2, 2))
     variance = float(np.nanmean(points[POINT_COVARIANCE_COLUMNS[down]].to_numpy(dtype=float)))
     of_points_m = float(np.sqrt(variance)) if variance > 0 else 0.0
-    return Ground(float(np.hypot(plane.sigma_m, of_points_m)), plane.normal, plane.offset)
+    of_pose_m = float(calibration.sigma[2])  # the points' heights were found by this camera, and err with its own
+    return Ground(float(np.linalg.norm([plane.sigma_m, of_points_m, of_pose_m])), plane.normal, plane.offset)
