@@ -105,8 +105,7 @@ def read_table(path: Path | str, schema: pa.Schema | None = None) -> pd.DataFram
     missing = [name for name in schema.names if name not in arrow.column_names] if schema else []
     if missing:
         raise InputError(str(path), f"no column {', '.join(missing)}", "the stage's schema", "delete it and run again")
-    held = {one.name: {one.type, pa.string()} if one.metadata == _NAMES else {one.type} for one in schema or ()}
-    wrong = [name for name, kinds in held.items() if arrow.schema.field(name).type not in kinds]
+    wrong = [one.name for one in schema or () if not _is_held_by(one, arrow.schema.field(one.name).type)]
     if wrong:
         raise InputError(
             str(path), f"column {wrong[0]} of another type", "the stage's schema", "delete it and run again"
@@ -140,6 +139,13 @@ def _of_its_names(schema: pa.Schema, table: pd.DataFrame) -> pa.Schema:
         return field.remove_metadata().with_type(pa.string() if text else field.type)
 
     return pa.schema([on_disk(field) for field in schema])
+
+
+def _is_held_by(field: pa.Field, kind: pa.DataType) -> bool:
+    """Whether a column of this type is what a field of the schema asks for; pandas writes text as a type of its own."""
+    if pa.types.is_large_string(kind):
+        kind = pa.string()
+    return bool(kind == field.type or (field.metadata == _NAMES and kind == pa.string()))
 
 
 def floats(*names: str) -> list[pa.Field]:

@@ -45,7 +45,11 @@ FAULTS = {  # name: file, fault, what is told behind the file's name
     "pixel": (VIEW, with_cell(3, 3, "648"), ", row 3, column 3: found pixel 648, expected a pixel of the sensor"),
     "nan": (VIEW, with_cell(3, 8, "nan"), ", row 3, pitch_rad: found no number"),
     "empty": (VIEW, lambda path: path.write_text(""), ": found an empty file"),
-    "order": (COVARIANCES, with_rows(lambda rows: [rows[1], rows[0], *rows[2:]]), ", row 2, column 1: found time"),
+    "two": (
+        COVARIANCES,
+        with_rows(lambda rows: [rows[0], [rows[0][0], *rows[1][1:]], *rows[2:]]),
+        ", row 2, column 1: found time",
+    ),
     "asymmetric": (COVARIANCES, with_cell(9, 14, "0.01"), ", row 9: found covariance"),
     "negative": (COVARIANCES, with_cell(9, 2, "-1e-4"), ", row 9: found a covariance whose correlations have"),
     "gap": (COVARIANCES, with_rows(lambda rows: rows[:10]), ": observation 25, point"),

@@ -75,10 +75,10 @@ def test_known_points_are_among_those_that_tell_the_levels_of_many():
     survey = timed_survey.make_survey(4, 100, seed=3)
     information = np.zeros((100, 3, 3))
     information[[3, 50, 97]] = np.eye(3)
-    chosen = some_points(survey, 0, KnownPoints(np.zeros((100, 3)), information))
+    chosen = some_points(survey, 0, KnownPoints(np.zeros((100, 3)), information).apart)
     seen = np.isfinite(chosen.u_px).any(axis=0)
     assert seen[[3, 50, 97]].all()
-    assert seen.sum() == FEW_POINTS
+    assert FEW_POINTS <= seen.sum() <= FEW_POINTS + 3
 
 
 def test_views_in_any_order_are_laid_out_by_time(survey):

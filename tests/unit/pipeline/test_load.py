@@ -21,6 +21,11 @@ def rewrite(path, change):
     path.write_text("\n".join(change(path.read_text().splitlines())) + "\n")
 
 
+def with_time_of(first, second):
+    """The second row at the first one's time."""
+    return f"{first.split(',')[0]},{second.split(',', 1)[1]}"
+
+
 @pytest.mark.field
 def test_whole_record_is_told_in_numbers(field_data, ladybird):
     assert check_readable(ladybird, field_data) == "375 points in 25 views"
@@ -34,7 +39,7 @@ def test_view_and_covariances_are_both_read(views, ladybird):
     with pytest.raises(InputError, match=r"-split_target_points\.csv, row 1, column 2: found point '-1'"):
         check_readable(ladybird, views)
     view.write_text(whole)
-    rewrite(views / "nav_covs.csv", lambda rows: [rows[1], rows[0], *rows[2:]])
+    rewrite(views / "nav_covs.csv", lambda rows: [rows[0], with_time_of(rows[0], rows[1]), *rows[2:]])
     with pytest.raises(InputError, match=r"nav_covs\.csv, row 2, column 1: found time"):
         check_readable(ladybird, views)
 

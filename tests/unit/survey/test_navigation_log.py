@@ -131,7 +131,10 @@ def test_rows_out_of_order_are_sorted_and_repeats_passed_over(tmp_path, caplog):
             lambda t: pd.concat([t.iloc[:2], t.iloc[[1]].assign(down_m=9.0), t.iloc[2:]]),
             r"row 3, time_us: found time .* with another pose, expected one pose at a time; remove one of the rows",
         ),
-        (lambda t: t.assign(down_m=np.where(t.index == 4, np.nan, 0.0)), "row 5, down_m: found no number"),
+        (
+            lambda t: t.assign(down_m=np.where(t.index == 4, np.nan, 0.0)),
+            "row 5, down_m: found nothing",
+        ),
         (lambda t: t.assign(yaw_rad=180.0), r"row 1, roll_rad to yaw_rad: found angles .*, expected radians"),
         (lambda t: t.assign(time_us=t["time_us"] // 1000), "they look like milliseconds"),
         (lambda t: t.assign(roll_rad="left"), "mend the file"),

@@ -128,6 +128,8 @@ def _head(path: Path, layout: TextLayout, apart: Sequence[str]) -> tuple[list[st
     lines = _first_lines(path, layout.encoding)
     row, names = layout.skipped_lines, list[str]()
     if layout.heading:
+        if _next_row(lines, layout.skipped_lines, None) >= len(lines):
+            raise InputError(str(path), "no heading", "a line with the names of the columns", "restore the file")
         row = _heading_row(path, lines, layout)
         names = _distinct(_words(_without_comment_sign(lines[row], layout), layout))
         row += 1
@@ -147,7 +149,7 @@ def _first_lines(path: Path, encoding: str) -> list[str]:
 
 def _heading_row(path: Path, lines: list[str], layout: TextLayout) -> int:
     if not layout.heading_words:
-        return min(_next_row(lines, layout.skipped_lines, layout.comment), len(lines) - 1) if lines else 0
+        return min(_next_row(lines, layout.skipped_lines, layout.comment), len(lines) - 1)
     for row in range(layout.skipped_lines, len(lines)):
         if set(layout.heading_words) <= set(_words(_without_comment_sign(lines[row], layout), layout)):
             return row

@@ -68,7 +68,7 @@ def weights_caption(views: pd.DataFrame, measurements: pd.DataFrame) -> str:
     told = f"Far off: {named}." if named else "None is far off."
     if np.ptp(np.concatenate([known["weight"], measurements["weight"]])) < _ALIKE:
         return "What each observation (bars) and each of its measurements (cells) counts: all alike, none is far off."
-    least = measurements.loc[measurements["weight"].idxmin()]
+    least = {name: measurements[name][measurements["weight"].idxmin()] for name in ("observation", "point", "weight")}
     lightest = known.loc[known["weight"].idxmin()]
     return (
         "What each observation (bars) and each of its measurements (cells) counts: 1 is as good as the levels say, "

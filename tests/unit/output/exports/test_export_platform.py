@@ -34,7 +34,9 @@ def test_a_file_that_is_there_stays_when_the_export_fails(made, tmp_path, format
 
 
 def test_unknown_format_names_the_nearest(made, tmp_path):
-    with pytest.raises(InputError, match=r"format: found 'urfd', expected one of csv, .*; did you mean urdf\?"):
+    with pytest.raises(
+        InputError, match=r"format: found 'urfd', expected one of camera_info, csv, .*; did you mean urdf\?"
+    ):
         made.export("urfd", tmp_path)
 
 
