@@ -125,16 +125,16 @@ def _write_scan(scan: ScanOnMap, output: Path, common: str, n_cores: int) -> Sca
     remove_leftovers(output, [*names, record.name])
     with written_together(output, [*names, record.name]) as paths:
         igm, igm_header, sigma, sigma_header_ = (paths[name] for name in names)
-        extent = write_places(scan, igm, sigma, n_cores)
+        counts = write_places(scan, igm, sigma, n_cores)
         igm_header.write_text(places_header(scan), encoding="utf-8")
         sigma_header_.write_text(sigma_header(scan), encoding="utf-8")
-        made = ScanMap(scan.name, scan.shape[0] * scan.shape[1], extent.counts, budget_table(scan), is_new=True)
+        made = ScanMap(scan.name, scan.shape[0] * scan.shape[1], counts, budget_table(scan), is_new=True)
         paths[record.name].write_text(_record_text(made, digest), encoding="utf-8")
     return made
 
 
 def _record_text(made: ScanMap, digest: str) -> str:
-    rows = made.budget.astype(object).where(made.budget.notna(), None).to_numpy().tolist()
+    rows = made.budget.astype(object).where(made.budget.notna(), None).to_dict(orient="records")
     values = {"scan": made.name, "made_of": digest, "n_pixels": made.n_pixels, "counts": made.counts, "budget": rows}
     return json.dumps(values, indent=1) + "\n"
 

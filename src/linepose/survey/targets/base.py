@@ -5,7 +5,7 @@ from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PositiveFloat, PositiveInt
+from pydantic import PositiveInt
 
 from linepose.arrays import Floats
 from linepose.settings import Settings
@@ -74,18 +74,7 @@ class GridSection(TargetSection):
 
 
 class RectifiedSection(GridSection):
-    """A grid that is found in scans which are rectified first, on a surface that this says roughly."""
-
-    surface: Literal["ground", "upright"] = Field(
-        "ground",
-        description="What the target lies on or hangs at: flat ground, or a plane that faces the camera. A rough "
-        "distance is enough.",
-    )
-    distance_m: PositiveFloat = Field(
-        1.0,
-        description="To that surface (m): of the ground below the body's origin, or of an upright target in front of "
-        "the camera.",
-    )
+    """A grid that standard detectors find where it is seen without much distortion."""
 
     def find(self, picture: Picture) -> Found | None:
         """The points seen in a picture that shows the target without much distortion; None where it is not seen."""

@@ -4,6 +4,7 @@ import pytest
 from linepose.errors import InputError
 from linepose.output.map.budget import ALL, budget_table
 from linepose.output.map.files import written_together
+from linepose.output.map.places import count_states
 from linepose.output.map.sources import SOURCES
 from linepose.output.map.write_places import places_header, write_places
 from unit.output.map.made_up_scan import scan
@@ -15,12 +16,12 @@ def test_files_hold_the_places_of_all_blocks(tmp_path, n_cores):
     igm, sigma = tmp_path / "igm.dat", tmp_path / "sigma.dat"
     igm.touch()
     sigma.touch()
-    extent = write_places(strip, igm, sigma, n_cores)
+    counts = write_places(strip, igm, sigma, n_cores)
     whole = strip.places(0, 600)
     np.testing.assert_array_equal(np.fromfile(igm).reshape(600, 3, 60), whole.place_m)
     written = np.fromfile(sigma, dtype=np.float32).reshape(600, 4, 60)
     np.testing.assert_array_equal(written, whole.sigma_m)
-    np.testing.assert_allclose(extent.corners_m[1], whole.place_m[:, :2].max(axis=(0, 2)))
+    assert counts == count_states(whole.state)
 
 
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")

@@ -1,0 +1,42 @@
+"""The scans of the finished project on the map: marks of a known place lie where the files say."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.ndimage import map_coordinates
+
+from linepose.survey.observations import POSITION_COLUMNS
+
+pytestmark = pytest.mark.workflow
+N_PIXELS = 648
+
+
+def bands_at(path, kind, n_bands, marks):
+    """The bands (M, B) of a file that is interleaved by line, at marks' lines and pixels."""
+    bands = np.fromfile(path, dtype=kind).reshape(-1, n_bands, N_PIXELS)
+    places = marks[["line", "u_px"]].to_numpy().T
+    return np.stack([map_coordinates(bands[:, band], places, order=1) for band in range(n_bands)], axis=-1)
+
+
+def test_marks_on_the_board_lie_where_the_map_says(copied):
+    done = copied.linepose("map", "tiny", "--cores", "2")
+    assert done.returncode == 0, done.stderr
+    results = copied.folder / "results" / "tiny"
+    truth = pd.read_parquet(results / "truth.parquet").query("visible")
+    true_m = truth[[f"point_{name}" for name in POSITION_COLUMNS]].to_numpy()[:, [1, 0, 2]] * [1, 1, -1]
+    found, sigma = np.full((len(truth), 3), np.nan), np.full((len(truth), 4), np.nan)
+    for number in truth["observation"].unique():
+        stem, mine = results / "map" / f"observation-{number:02d}", (truth["observation"] == number).to_numpy()
+        found[mine] = bands_at(f"{stem}-igm.dat", np.float64, 3, truth[mine])
+        sigma[mine] = bands_at(f"{stem}-sigma.dat", np.float32, 4, truth[mine])
+        record = json.loads((results / "map" / f"{stem.name}-map.json").read_text())
+        assert {row["source"] for row in record["budget"]} >= {"pose", "intrinsics", "navigation", "pixel", "ground"}
+    error = found - true_m
+    assert np.all(np.abs(error[:, :2]) < 3 * sigma[:, :2])
+    assert np.all(np.hypot(error[:, 0], error[:, 1]) < 0.03)  # a hundredth of the range
+    # the points' plane errs with the camera's height, which the paper's likelihood states too surely
+    assert np.ptp(error[:, 2]) < 0.01
+    again = copied.linepose("map", "tiny")
+    assert again.stdout.count("(made before)") == 4
