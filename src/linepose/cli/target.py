@@ -1,12 +1,15 @@
 """`linepose target`: a target to print, true to scale, and its description for a platform's file."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
 if TYPE_CHECKING:
     from linepose.survey.targets.base import GridSection
+
+
+_DEFAULT: Final = "rings"
 
 
 def _tell_kinds(asked: bool) -> None:
@@ -19,7 +22,7 @@ def _tell_kinds(asked: bool) -> None:
 
 
 def target(
-    kind: Annotated[str, typer.Option(help="One of those that --list tells.")] = "rings",
+    kind: Annotated[str, typer.Option(help="One of those that --list tells.")] = _DEFAULT,
     rows: Annotated[
         int | None, typer.Option(min=1, help="Rows of rings, dots, squares or tags.", show_default="of the kind")
     ] = None,
@@ -61,15 +64,20 @@ def target(
     from linepose.output.printing.write import target_text, write_pdf
     from linepose.tables import atomic_write
 
+    if range_m is not None or pixel_mrad is not None:
+        _check_view(range_m, pixel_mrad)
     chosen = _chosen(kind, rows, columns, spacing_mm, described)
     sheet = paper_of(paper) if paper else None if tile else paper_of("A1")
     n_sheets = write_pdf(chosen, output, sheet, paper_of(tile, "--tile") if tile else None)
     description = output.with_suffix(".yaml")
-    with atomic_write(description) as temporary:
-        temporary.write_text(target_text(chosen), encoding="utf-8")
+    is_new = described is None or described.resolve() != description.resolve()
+    if is_new:
+        with atomic_write(description) as temporary:
+            temporary.write_text(target_text(chosen), encoding="utf-8")
     typer.echo(f"wrote {output}: {n_sheets} sheet{'s' if n_sheets > 1 else ''}, and a page on mounting it")
-    typer.echo(f"wrote {description}: the section `target` of the platform's file")
-    if range_m is not None or pixel_mrad is not None:
+    if is_new:
+        typer.echo(f"wrote {description}: the section `target` of the platform's file")
+    if range_m is not None and pixel_mrad is not None:
         _tell_sizes(chosen, range_m, pixel_mrad)
 
 
@@ -82,6 +90,9 @@ def _chosen(
     from linepose.survey.targets.registry import KINDS, PRINTED
 
     if described is not None:
+        if kind != _DEFAULT or rows or columns or spacing_mm is not None:
+            found = "with --kind, --rows, --columns or --spacing-mm"
+            raise InputError(f"--described {described}", found, "either", "change the file, or leave --described out")
         target = read_target(described)
         if not isinstance(target, GridSection):
             raise InputError(f"{described}: target.kind", target.kind, f"one of {', '.join(PRINTED)}", "there is none")
@@ -103,16 +114,18 @@ def _chosen(
         raise InputError(f"--kind {kind}", given, fault.expected, "change --rows or --columns") from None
 
 
-def _tell_sizes(target: "GridSection", range_m: float | None, pixel_mrad: float | None) -> None:
+def _check_view(range_m: float | None, pixel_mrad: float | None) -> None:
     from linepose.errors import InputError
-    from linepose.output.printing.seen import size_rows, spacing_for
 
     for option, value in (("--range-m", range_m), ("--pixel-mrad", pixel_mrad)):
         if value is None or not value > 0:
             found = "nothing" if value is None else f"{value:g}"
             raise InputError(option, found, "a number above 0", "give both --range-m and --pixel-mrad")
-    assert range_m is not None
-    assert pixel_mrad is not None
+
+
+def _tell_sizes(target: "GridSection", range_m: float, pixel_mrad: float) -> None:
+    from linepose.output.printing.seen import size_rows, spacing_for
+
     typer.echo(f"from {range_m:g} m a pixel sees {range_m * pixel_mrad:.1f} mm:")
     too_small = False
     for name, size_m, needed_m in size_rows(target, range_m, pixel_mrad * 1e-3):

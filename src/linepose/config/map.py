@@ -1,4 +1,4 @@
-"""How scans are put on the map: the ground they show, and what is written."""
+"""How scans are put on the map: the ground they show."""
 
 from typing import Literal
 
@@ -8,7 +8,7 @@ from linepose.settings import Settings
 
 
 class MapSection(Settings):
-    """Scans on the map: the ground, and what is written beside each pixel's place and sigmas."""
+    """Scans on the map: the ground that they show."""
 
     ground: Literal["points", "height", "dem"] = Field(
         "points",

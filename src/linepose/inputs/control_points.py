@@ -104,6 +104,10 @@ def _positions(
 ) -> Floats:
     """North, east, down (R, 3); NaN horizontally where a row has none."""
     first, second, third = (values[name] for name in columns)
+    for row in np.flatnonzero(np.isfinite(first) != np.isfinite(second))[:1]:
+        given, lacking = columns[:2] if np.isfinite(first[row]) else columns[1::-1]
+        found = f"{given} without {lacking}"
+        raise InputError(f"{path}, row {row + 2}", found, "both, or neither for a height alone", "complete the row")
     if crs is None:
         return np.column_stack([first, second, third])
     if frame is None:
@@ -127,7 +131,7 @@ def _geodetic(
 ) -> tuple[Floats, Floats]:
     """Longitude and latitude (deg, WGS 84) of coordinates (R,) each."""
     from pyproj import CRS, Transformer
-    from pyproj.exceptions import CRSError
+    from pyproj.exceptions import CRSError, ProjError
 
     try:
         system = CRS.from_user_input(crs)
@@ -137,7 +141,10 @@ def _geodetic(
         expected = ", ".join(_PROJECTED if system.is_projected else _GEOGRAPHIC)
         raise InputError(str(path), f"{', '.join(columns)} with points.crs {crs}", expected, "correct one of them")
     east, north = (first, second) if columns == _PROJECTED else (second, first)
-    longitude, latitude = Transformer.from_crs(system, "EPSG:4326", always_xy=True).transform(east, north)
+    try:
+        longitude, latitude = Transformer.from_crs(system, "EPSG:4326", always_xy=True).transform(east, north)
+    except ProjError:
+        raise InputError("points.crs", crs, "a system of places on the Earth", "correct it") from None
     wrong = np.isfinite(east) & ~(np.isfinite(longitude) & np.isfinite(latitude))
     for row in np.flatnonzero(wrong)[:1]:
         place = f"{path}, row {row + 2}"

@@ -73,6 +73,7 @@ def read_terrain(path: Path, frame: LocalFrame | None, origin_m: Floats, height_
     """The height model of a file; raises InputError for one that cannot be used."""
     import rasterio
     from pyproj import Transformer
+    from pyproj.exceptions import ProjError
     from rasterio.errors import RasterioIOError
 
     place = "points.ground.dem"
@@ -90,6 +91,8 @@ def read_terrain(path: Path, frame: LocalFrame | None, origin_m: Floats, height_
             heights = raster.read(1, masked=True).astype(float)
             to_cell = np.array(~raster.transform, dtype=float).reshape(3, 3)
             from_wgs84 = Transformer.from_crs("EPSG:4326", raster.crs, always_xy=True)
+    except ProjError:
+        raise InputError(str(path), "a system of no place on the Earth", "one of the Earth", "warp it") from None
     except RasterioIOError as error:
         raise InputError(
             str(path), " ".join(str(error).split())[:80], "a raster of heights", f"correct {place}"

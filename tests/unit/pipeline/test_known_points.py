@@ -110,6 +110,7 @@ def test_control_points_of_another_datum_are_told(flight, tmp_path, shift_m, wor
         ("id,latitude_deg,longitude_deg,height_m,sigma_m\n1,1,2,3,1\n", "easting_m, northing_m"),
         ("name,easting_m\n1,1\n", "id, coordinates and sigmas"),
         ("id,easting_m,northing_m,height_m,sigma_m\n1,1,2,,1\n", "a height"),
+        ("id,easting_m,northing_m,height_m,sigma_m\n1,1,,3,1\n", "row 2: found easting_m without northing_m"),
         ("id,easting_m,northing_m,height_m,sigma_m\nx,400000,6000000,3,1\n", "points that the scans show"),
     ],
 )

@@ -63,6 +63,14 @@ def _flight(path: Path) -> FlightLog:
     attitude, position = tables.get(_ATTITUDE, {}), tables.get(_POSITION, {})
     gps_name = next((name for name in _GPS if name in tables), _GPS[0])
     gps = tables.get(gps_name, {})
+    fields = {
+        _ATTITUDE: ["q[0]", "q[1]", "q[2]", "q[3]"],
+        _POSITION: ["lat", "lon"],
+        gps_name: ["time_utc_usec", "fix_type"],
+    }
+    for message, columns in ((attitude, _ATTITUDE), (position, _POSITION), (gps, gps_name)):
+        for field in (one for one in fields[columns] if message and one not in message):
+            raise InputError(str(path), f"{columns} without {field}", "messages of a PX4 autopilot", "restore the log")
     quaternion = np.stack([_column(attitude, f"q[{at}]") for at in (1, 2, 3, 0)], axis=-1)
     usable = _column(gps, "time_utc_usec") > 0
     usable &= _column(gps, "fix_type") >= _FIX_3D

@@ -65,6 +65,8 @@ def rectify(
     Raises InputError where the camera does not look at the surface, or the map would have too many cells.
     """
     n_lines = len(intensity)
+    if n_lines < 2:
+        raise InputError("rectified scan", f"{n_lines} lines", "two or more", "take a longer scan")
     seed_px = np.linspace(0, camera.n_pixels - 1, _SEED_PIXELS)
     seen = _on_surface(poses, normalised_from_pixel(camera, seed_px), surface)  # (L, S, 2)
     usable = np.isfinite(seen).all(axis=-1)
@@ -74,10 +76,11 @@ def rectify(
         apart = np.linalg.norm(np.diff(seen, axis=1), axis=-1)
         cell_m = float(np.nanmedian(apart)) * (_SEED_PIXELS - 1) / (camera.n_pixels - 1)
     first, last = seen[usable].min(axis=0), seen[usable].max(axis=0)
-    size = np.ceil((last - first) / cell_m).astype(int) + 1
-    if size[0] * size[1] > _MOST_CELLS:
-        found, expected = f"a map of {size[0]} x {size[1]} cells", f"at most {_MOST_CELLS} cells"
+    extent = np.ceil((last - first) / cell_m) + 1
+    if not extent[0] * extent[1] <= _MOST_CELLS:
+        found, expected = f"a map of {extent[0]:.0f} x {extent[1]:.0f} cells", f"at most {_MOST_CELLS} cells"
         raise InputError("rectified scan", found, expected, "take larger cells, or correct the surface's distance")
+    size = extent.astype(int)
     seeds = np.full(size[::-1] // _SEED_CELLS + 1, -1, dtype=np.int64)
     line = np.broadcast_to(np.arange(n_lines)[:, None], usable.shape)[usable]
     column, row = ((seen[usable] - first) / (cell_m * _SEED_CELLS)).astype(int).T

@@ -5,6 +5,7 @@ pixels have their centres at 0.5, 1.5, ..., so cx counts from the first pixel's 
 the distance d from cx in pixels, `x = (d - k3 d^2 - k2 d^3 - k1 d^5) / f`.
 """
 
+import re
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -42,7 +43,7 @@ def write_gref4hsi(calibration: "Calibration", options: ExportOptions, path: Pat
     }
     root = ElementTree.Element("calibration")
     for said in explained(calibration, estimate):
-        root.append(ElementTree.Comment(f" {said.replace('--', '- -')} "))
+        root.append(ElementTree.Comment(f" {re.sub('-(?=-)', '- ', said)} "))
     for name, value in values.items():
         ElementTree.SubElement(root, name).text = exact_decimal(value + 0.0)
     ElementTree.SubElement(root, "width").text = str(calibration.camera.n_pixels)

@@ -35,7 +35,8 @@ def budget_table(scan: ScanOnMap) -> pd.DataFrame:
         parts[AS_REPORTED] = _medians(reported, ("navigation",))
     parts[ALL] = _medians(some, SOURCES)
     centre = int(np.clip(np.rint(scan.mounted.camera.principal_point_px), 0, scan.shape[1] - 1))
-    edge = 0 if parts[ALL][2, 0] > parts[ALL][2, -1] else scan.shape[1] - 1
+    ends = np.nan_to_num(parts[ALL][2, [0, -1]], nan=-1.0)
+    edge = 0 if ends[0] > ends[1] else scan.shape[1] - 1
     return pd.DataFrame(
         [
             [scan.name, place, source, *(float(one) for one in values[:, pixel])]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from linepose.errors import InputError
 
-_ENVI_TYPES: Final = {"float32": 4, "float64": 5, "int32": 3}
+_ENVI_TYPES: Final = {"float32": 4, "float64": 5}
 
 
 @contextmanager
@@ -68,8 +68,8 @@ def remove_leftovers(folder: Path, names: Sequence[str]) -> None:
             path.unlink(missing_ok=True)
 
 
-def envi_header(shape: tuple[int, int], bands: Sequence[str], dtype: str, about: str, more: Sequence[str] = ()) -> str:
-    """Text of a header of lines and samples, interleaved by line, little-endian; `more` are further rows."""
+def envi_header(shape: tuple[int, int], bands: Sequence[str], dtype: str, about: str) -> str:
+    """Text of a header of lines and samples, interleaved by line, little-endian."""
     lines, samples = shape
     rows = [
         "ENVI",
@@ -83,25 +83,8 @@ def envi_header(shape: tuple[int, int], bands: Sequence[str], dtype: str, about:
         "interleave = bil",
         "byte order = 0",
         f"band names = {{{', '.join(bands)}}}",
-        *more,
     ]
     return "\n".join(rows) + "\n"
-
-
-def map_info(west_m: float, north_m: float, cell_m: float, crs: str | None) -> list[str]:
-    """Rows of an ENVI header that say where its first cell's corner lies, and in which reference system."""
-    corner = f"1, 1, {west_m:.17g}, {north_m:.17g}, {cell_m:.17g}, {cell_m:.17g}"
-    if crs is None:
-        return [f"map info = {{Arbitrary, {corner}, 0, North, units=Meters}}"]
-    from pyproj import CRS
-
-    known = CRS.from_user_input(crs)
-    zone = known.utm_zone
-    kind = (
-        f"UTM, {corner}, {zone[:-1]}, {'North' if zone.endswith('N') else 'South'}" if zone else f"Arbitrary, {corner}"
-    )
-    words = known.to_2d().to_wkt("WKT1_ESRI")
-    return [f"map info = {{{kind}, WGS-84, units=Meters}}", f"coordinate system string = {{{words}}}"]
 
 
 def write_at(handle: int, values: NDArray[np.generic], offset: int) -> None:

@@ -66,7 +66,9 @@ def plane_through(points_m: ArrayLike, sigma_m: float | None = None) -> Ground:
     across = np.linalg.svd(points[:, :2] - centre[:2], compute_uv=False) if len(points) else np.zeros(2)
     if len(points) < _FEWEST_POINTS or across[1] <= _FLATTEST * across[0]:
         found = f"{len(points)} points" + (" on a line" if len(points) >= _FEWEST_POINTS else "")
-        raise InputError("map.ground", found, "three or more points that span a plane", "give map.height_m")
+        raise InputError(
+            "map.ground", found, "three or more points that span a plane", "write map: {ground: height, height_m: ...}"
+        )
     design = np.column_stack([points[:, :2] - centre[:2], np.ones(len(points))])
     (by_north, by_east, down), *_ = np.linalg.lstsq(design, points[:, 2], rcond=None)
     left = points[:, 2] - design @ [by_north, by_east, down]

@@ -46,6 +46,15 @@ def _above(grid: Floats, corner: Floats, cell: Floats, c: Floats, w: Floats, s: 
 
 
 @kernel_part
+def _within(least: float, largest: float, c: float, w: float, first: float, last: float) -> tuple[float, float]:
+    """The part of first to last along a ray at which c + s w is from least to largest; empty: first above last."""
+    if w == 0.0:
+        return (first, last) if least <= c <= largest else (1.0, 0.0)
+    one, other = (least - c) / w, (largest - c) / w
+    return max(first, min(one, other)), min(last, max(one, other))
+
+
+@kernel_part
 def _first_meeting(
     grid: Floats, corner: Floats, cell: Floats, extremes: Floats, c: Floats, w: Floats, out: Floats
 ) -> tuple[float, int]:
@@ -55,6 +64,12 @@ def _first_meeting(
     first, last = max(0.0, (-extremes[1] - _MARGIN_M - c[2]) / w[2]), (-extremes[0] + _MARGIN_M - c[2]) / w[2]
     if last <= 0.0:
         return 0.0, MISSED
+    begins = first
+    n_rows, n_columns = grid.shape
+    first, last = _within(corner[0] - (n_rows - 1) * cell[0], corner[0], c[0], w[0], first, last)
+    first, last = _within(corner[1], corner[1] + (n_columns - 1) * cell[1], c[1], w[1], first, last)
+    if not first <= last:
+        return 0.0, OUTSIDE
     along = np.sqrt(w[0] * w[0] + w[1] * w[1])
     steps = int((last - first) * along / (0.5 * min(cell[0], cell[1]))) + 2
     step = (last - first) / (steps - 1)
@@ -70,7 +85,7 @@ def _first_meeting(
         now = out[0]
         if now <= 0.0 and meetings == 0:
             if k == 0:
-                return 0.0, MISSED  # it begins below the ground
+                return 0.0, MISSED if first == begins else OUTSIDE  # it begins below the ground
             if known:
                 found = _between(grid, corner, cell, c, w, s - step, s, out)
             elif lacking != FOUND:
@@ -80,8 +95,10 @@ def _first_meeting(
             meetings += 1
         before, known = now, True
     if meetings == 0:
-        return 0.0, lacking if lacking != FOUND else MISSED
-    _above(grid, corner, cell, c, w, found, out)
+        return 0.0, lacking if lacking != FOUND else OUTSIDE
+    state = _above(grid, corner, cell, c, w, found, out)
+    if state != FOUND:
+        return 0.0, state
     return found, MET_TWICE if meetings > 1 else FOUND
 
 
@@ -200,7 +217,7 @@ def on_the_ground(
             else:
                 down = n[0] * w[0] + n[1] * w[1] + n[2] * w[2]
                 s = (offset - n[0] * c[0] - n[1] * c[1] - n[2] * c[2]) / down
-                state = FOUND if s > 0.0 and s < np.inf else MISSED
+                state = FOUND if down < 0.0 and s > 0.0 and s < np.inf else MISSED
             states[line, pixel] = state
             if state != FOUND and state != MET_TWICE:
                 igm[line, :, pixel] = np.nan

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from linepose.adjustment.levels import LEVEL_NAMES, Levels
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.estimation.noise_models import noise_model
 from linepose.inputs.navigation import log_covariances, read_navigation
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.scans.line_times import line_times_of
@@ -27,7 +28,8 @@ from linepose.output.map.places import Navigation, ScanOnMap
 from linepose.output.map.sources import MountedCamera
 from linepose.output.map.write_places import places_header, sigma_header, write_places
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, LEVELS
-from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.calibration import INLIERS, Calibration
+from linepose.pipeline.code_digest import script_digest
 from linepose.survey.navigation_log import POSE_AT
 
 if TYPE_CHECKING:
@@ -72,8 +74,8 @@ class PlatformMap:
         return replace(self.scan, name=path.stem, time_us=times, correction=self._correction(number))
 
     def _correction(self, number: int) -> Floats:
-        """What the adjustment added to the body's poses in an observation; zero where it has none."""
-        if not self.calibration.results.has("adjusted_views"):
+        """What the adjustment added to the body's poses in an observation; zero where the pose is of no adjustment."""
+        if not _is_adjusted(self.calibration):
             return np.zeros(6)
         views = self.calibration.adjusted_views
         rows = views.loc[views["observation"] == number, list(CORRECTION_COLUMNS)].to_numpy(dtype=float)
@@ -99,7 +101,19 @@ def platform_map(calibration: Calibration, section: "MapSection", folder: Path) 
     frame = survey_map(calibration)
     ground = ground_of(calibration, section, frame, folder)
     scan = ScanOnMap("", np.empty(0, dtype=np.int64), mounted, navigation, ground, frame, np.zeros(6))
-    return PlatformMap(scan, select_scans(folder, source.scans, source.left_out), calibration, source)
+    paths = select_scans(folder, source.scans, source.left_out)
+    _check_names(paths)
+    return PlatformMap(scan, paths, calibration, source)
+
+
+def _check_names(paths: dict[int, Path]) -> None:
+    """Raise InputError where two scans, whose files are named as they are, have one name."""
+    known: dict[str, Path] = {}
+    for path in paths.values():
+        if path.stem in known:
+            found, expected = f"a scan of the name of {known[path.stem]}", "scans of different names"
+            raise InputError(str(path), found, expected, "rename one of them")
+        known[path.stem] = path
 
 
 def write_maps(platform: PlatformMap, output: Path, n_cores: int = 1) -> Iterator[ScanMap]:
@@ -122,6 +136,7 @@ def _write_scan(scan: ScanOnMap, output: Path, common: str, n_cores: int) -> Sca
     if finished is not None:
         return finished
     check_target(record)
+    record.unlink(missing_ok=True)  # until all is written nothing says that it is
     remove_leftovers(output, [*names, record.name])
     with written_together(output, [*names, record.name]) as paths:
         igm, igm_header, sigma, sigma_header_ = (paths[name] for name in names)
@@ -161,24 +176,25 @@ def _digest(scan: ScanOnMap) -> str:
         repr(mounted.levels),
         repr(scan.frame),
         scan.navigation.pose_at.__name__,
+        script_digest(__file__),
         repr((ground.sigma_m, ground.offset, ground.corner_m, ground.cell_m)),
     ]
     arrays: list[NDArray[Any]] = [mounted.pose, mounted.covariance, log.time_us, log.position_m, log.euler_rad]
     arrays += [reported.time_us, reported.covariance, ground.normal, ground.grid]
-    sources = [path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))]
     whole = hashlib.sha256()
-    for part in (
-        *(word.encode() for word in words),
-        *(np.ascontiguousarray(one).tobytes() for one in arrays),
-        *sources,
-    ):
+    for part in (*(word.encode() for word in words), *(np.ascontiguousarray(one).tobytes() for one in arrays)):
         whole.update(hashlib.sha256(part).digest())
     return whole.hexdigest()
 
 
+def _is_adjusted(calibration: Calibration) -> bool:
+    """Whether the pose is an adjustment's, with which levels and corrections were found."""
+    return calibration.stage == INLIERS and not noise_model(calibration.noise_model).removes_outliers
+
+
 def _levels(calibration: Calibration) -> Levels | None:
     """The scales that an adjustment found; None where the pose is not one's."""
-    if not calibration.results.has("levels"):
+    if not _is_adjusted(calibration):
         return None
     table = calibration.results.table("levels", LEVELS).set_index("level")["value"]
     return Levels(*(float(table[name]) for name in LEVEL_NAMES))

@@ -15,8 +15,8 @@ _MEANINGS = {
 def scan_sentence(made: ScanMap) -> str:
     """One line: how sure the places are at the centre and at the edge, and what was counted of the pixels."""
     whole = made.budget[made.budget["source"] == ALL].set_index("place")["radius_95_m"].astype(float)
-    centre, edge = whole["centre"] * _MM, whole["edge"] * _MM
-    told = [f"{made.name}: 95 % within {centre:.1f} mm at the centre, {edge:.1f} mm at the edge"]
+    radii = [f"{whole[place] * _MM:.1f} mm at the {place}" for place in ("centre", "edge") if whole[place] >= 0]
+    told = [f"{made.name}: 95 % within {', '.join(radii)}" if radii else f"{made.name}: no place on the ground"]
     told += [
         f"{made.counts[key]} of {made.n_pixels} pixels {words}" for key, words in _MEANINGS.items() if made.counts[key]
     ]

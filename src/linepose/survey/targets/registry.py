@@ -23,7 +23,7 @@ PRINTED: Final[dict[str, type[GridSection]]] = {
 
 
 def _of_a_known_kind(values: Any) -> Any:
-    if isinstance(values, Mapping) and values.get("kind") not in KINDS:
+    if isinstance(values, Mapping) and not (isinstance(values.get("kind"), str) and values["kind"] in KINDS):
         raise ValueError(f"kind: one of {', '.join(KINDS)}")
     return values
 

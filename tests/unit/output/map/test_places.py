@@ -5,7 +5,7 @@ import pytest
 
 from linepose.errors import InputError
 from linepose.geometry.camera import rays, undistort
-from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
+from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector, rotation_vector_from_matrix
 from linepose.output.map.ground import Ground, flat_ground, plane_through
 from linepose.output.map.places import count_states
 from linepose.output.map.sources import SOURCES, radii_of_95
@@ -118,6 +118,20 @@ def test_holes_edges_and_rays_that_miss_are_counted():
     assert 0 < count_states(beside.state)["n_outside"] < CAMERA.n_pixels
     assert np.array_equal(np.isnan(beside.place_m[:, 0]), beside.state > 0)
     assert count_states(scan(ground=flat_ground(50.0)).places(0, 1).state)["n_missed"] == CAMERA.n_pixels
+
+
+@pytest.mark.parametrize("ground", [flat_ground(50.0), hilly(np.tile([41.0, 42.0, 43.0, 42.0], (800, 200)))])
+def test_a_camera_that_looks_at_the_sky_and_past_the_horizon_sees_no_ground(ground):
+    """Some rays end at the horizon, where they would take steps without number."""
+    strip = scan(ground=ground)
+    for roll in (-np.pi / 2 + 0.06, -np.pi + 0.06):
+        pose = np.concatenate([POSE[:3], rotation_vector_from_matrix(matrix_from_euler([roll, 0.0, 0.0]))])
+        found = dataclasses.replace(strip, mounted=dataclasses.replace(strip.mounted, pose=pose)).places(0, 2)
+        met = found.is_found
+        assert not met.all()
+        assert np.all(np.isnan(found.place_m[:, 0]) == ~met)
+        if roll < -2.0:
+            assert not met.any()
 
 
 def test_a_ray_that_passes_a_wall_ends_at_it_and_is_counted():
