@@ -15,7 +15,15 @@ import pyarrow.parquet as pq
 from linepose.errors import InputError
 
 FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
-UNWRITABLE: Final = FULL | {errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.ENAMETOOLONG, errno.EISDIR}
+UNWRITABLE: Final = FULL | {
+    errno.EACCES,
+    errno.EPERM,
+    errno.ENOENT,
+    errno.EROFS,
+    errno.ENOTDIR,
+    errno.ENAMETOOLONG,
+    errno.EISDIR,
+}
 _MARK: Final = b"linepose"
 _NAMES: Final = {b"names": b"of points"}
 _marks: dict[bytes, bytes] = {}

@@ -75,8 +75,8 @@ def new(
     if navigation_file is not None:
         source = source or "scans"
         navigation_format, navigation_keys = _recognised(navigation_file, navigation_format)
-        navigation = navigation or navigation_file.name
     needed = (focal_length_mm, pixel_pitch_um, pixels, position_m, euler_deg)
+    _check_numbers(focal_length_mm, pixel_pitch_um, principal_point_px, *(position_m or ()), *(euler_deg or ()))
     asks = any(value is None for value in needed)
     root, platforms = _places(project)
     if (platforms / f"{name}.yaml").exists() and not force:
@@ -101,6 +101,8 @@ def new(
 
         ask = f"Navigation log ({', '.join(FORMATS.names())})"
         navigation_format = _given(None, "--navigation-format", ask, str, "table")
+    if navigation_file is not None:
+        navigation = navigation or _below(root / "data" / (dataset or name), navigation_file)
     sigmas = {"sigma_position_m": sigma_position_m, "sigma_rotation_deg": sigma_rotation_deg}
     path = write_platform(
         platforms,
@@ -142,6 +144,19 @@ def _recognised(path: Path, chosen: str | None) -> tuple[str, dict[str, Any]]:
         raise InputError(str(path), "no log that is recognised", f"one of {', '.join(FORMATS.names())}", remedy)
     typer.echo(f"{path}: {', '.join([f'format {name}', *(f'{key} {value}' for key, value in keys.items())])}")
     return name, keys
+
+
+def _below(folder: Path, path: Path) -> str:
+    """A file's path below the folder of the platform's files; its name where it is not there yet."""
+    whole = path.resolve()
+    return whole.relative_to(folder.resolve()).as_posix() if whole.is_relative_to(folder.resolve()) else path.name
+
+
+def _check_numbers(*values: float | None) -> None:
+    from linepose.errors import InputError
+
+    for value in (one for one in values if one is not None and not math.isfinite(one)):
+        raise InputError("options", f"{value:g}", "finite numbers", "correct the option")
 
 
 def _places(project: Path) -> tuple[Path, Path]:

@@ -113,6 +113,18 @@ def test_new_recognises_a_log(here, file, text, keys):
     assert {key: getattr(navigation, key) for key in keys} == keys
 
 
+def test_new_names_a_log_as_it_lies_below_the_platforms_data(here):
+    folder = here / "data" / "mine" / "log"
+    folder.mkdir(parents=True)
+    (folder / "a.txt").write_text("1 151.0 -33.0 42.0 5.0 -10.0 30.0 252818.25\n")
+    assert given("new", "mine", *GIVEN, "--navigation-file", "data/mine/log/a.txt").exit_code == 0
+    assert load_platform(here / "config" / "platforms", "mine").source.navigation.file == "log/a.txt"
+
+
+def test_new_refuses_what_is_no_finite_number(here):
+    assert "found nan, expected finite numbers" in one_line(given("new", "mine", "--focal-length-mm", "nan"))
+
+
 def test_new_names_no_covariances_where_the_preset_has_them(here):
     heading = "TIME, LATITUDE, LONGITUDE, ELLIPSOID HEIGHT, ROLL, PITCH, HEADING, NORTH SD, EAST SD, HEIGHT SD"
     (here / "a.txt").write_text(f"POS Export Utility\n {heading}, ROLL SD, PITCH SD, HEADING SD\n")
