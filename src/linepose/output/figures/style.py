@@ -100,9 +100,8 @@ def save(figure: Figure, stem: Path) -> None:
     """Write `stem`.png and `stem`.pdf, the same bytes for the same figure."""
     undated = {"CreationDate": None, "ModDate": None, "Producer": None, "Creator": None}
     with mpl.rc_context(_STYLE):
-        figure.draw_without_rendering()
-        figure.set_layout_engine("none")  # laid out once, not again for each file
         with atomic_write(stem.with_suffix(".png")) as path:
             figure.savefig(path, metadata={"Software": None})
+        figure.set_layout_engine("none")  # it is laid out; text is as large in both
         with atomic_write(stem.with_suffix(".pdf")) as path:
             figure.savefig(path, metadata=undated)

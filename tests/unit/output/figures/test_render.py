@@ -8,6 +8,7 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.text import Text
@@ -46,6 +47,14 @@ def test_every_figure_is_drawn_or_has_a_sentence_in_its_place(drawn):
     assert files == {f"{name}.{kind}" for name in shown for kind in ("png", "pdf")}
     assert all(index.loc[index["left_out"] == "", "caption"].str.endswith("."))
     write_table(index, folder / "index.parquet", SCHEMA)
+
+
+def test_nothing_is_cut_off_at_an_edge(drawn):
+    for path in sorted((drawn[0] / "figures").glob("*.png")):
+        with Image.open(path) as image:
+            light = np.asarray(image.convert("L"))
+        for edge in (light[0], light[-1], light[:, 0], light[:, -1]):
+            assert edge.min() > 250, path.name
 
 
 def test_a_broken_chain_costs_its_figures_and_no_other(drawn, tmp_path):
