@@ -14,13 +14,9 @@ from linepose.likelihood.base import Residuals
 from linepose.survey.observations import Survey
 
 
-def reprojection(survey: Survey, camera: Camera, found: Adjustment, line_period_s: float | None = None) -> Residuals:
-    """The errors at the adjusted camera and points and at the body poses as reported, of the survey that was adjusted.
-
-    The sigma counts every part of the navigation's error, lateness and pixels at the estimated levels.
-    """
-    measurements = measurements_from_survey(survey, camera, None, line_period_s)
-    optics = Optics(
+def optics_of(found: Adjustment, camera: Camera) -> Optics:
+    """The adjusted camera as the kernels take it."""
+    return Optics(
         np.ascontiguousarray(found.pose[:3]),
         np.ascontiguousarray(matrix_from_rotation_vector(found.pose[3:])),
         float(found.principal_point_px),
@@ -29,6 +25,15 @@ def reprojection(survey: Survey, camera: Camera, found: Adjustment, line_period_
         camera.k1,
         camera.k2,
     )
+
+
+def reprojection(survey: Survey, camera: Camera, found: Adjustment, line_period_s: float | None = None) -> Residuals:
+    """The errors at the adjusted camera and points and at the body poses as reported, of the survey that was adjusted.
+
+    The sigma counts every part of the navigation's error, lateness and pixels at the estimated levels.
+    """
+    measurements = measurements_from_survey(survey, camera, None, line_period_s)
+    optics = optics_of(found, camera)
     out = empty_linearised(len(measurements.u_px))
     points = np.ascontiguousarray(found.points_m[measurements.points])
     moved = 0.0 if np.isnan(found.clock_offset_s) else found.clock_offset_s

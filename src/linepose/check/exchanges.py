@@ -7,13 +7,13 @@ from typing import Final
 
 import numpy as np
 
-from linepose.adjustment.linearise import Optics, empty_linearised, linearise
+from linepose.adjustment.linearise import empty_linearised, linearise
 from linepose.adjustment.measurements import Measurements, measurements_from_survey
+from linepose.adjustment.reprojection import optics_of
 from linepose.adjustment.result import Adjustment
 from linepose.arrays import Floats
 from linepose.check.finding import Finding, warning
 from linepose.geometry.camera import Camera
-from linepose.geometry.rotations import matrix_from_rotation_vector
 from linepose.survey.observations import Survey
 from linepose.survey.point_names import in_words
 
@@ -70,15 +70,7 @@ def _errors(
     measurements: Measurements, camera: Camera, adjusted: Adjustment, rows: np.ndarray, points: np.ndarray
 ) -> Floats:
     """Error (K, 2) in px of measurements (K,) as views of points (K,), at the body poses as reported."""
-    optics = Optics(
-        np.ascontiguousarray(adjusted.pose[:3]),
-        np.ascontiguousarray(matrix_from_rotation_vector(adjusted.pose[3:])),
-        float(adjusted.principal_point_px),
-        float(adjusted.focal_length_m),
-        camera.pixel_pitch_m,
-        camera.k1,
-        camera.k2,
-    )
+    optics = optics_of(adjusted, camera)
     out = empty_linearised(len(rows))
     bodies, place = measurements.body_pose[rows], np.ascontiguousarray(adjusted.points_m[measurements.points])
     shifts = measurements.known.shifts

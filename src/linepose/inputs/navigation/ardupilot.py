@@ -5,17 +5,23 @@ above the sea, all by the same amount off the ellipsoid's. No covariances.
 """
 
 import logging
+from functools import partial
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
-from pydantic import Field, PositiveFloat
+from pydantic import Field
 
 from linepose.errors import InputError
 from linepose.inputs import gps_time
-from linepose.inputs.navigation.autopilot_poses import FlightLog, autopilot_poses, package
-from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
-from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
+from linepose.inputs.navigation.autopilot_poses import (
+    AutopilotSection,
+    FlightLog,
+    autopilot_poses,
+    begins_with,
+    package,
+)
+from linepose.inputs.navigation.format import NavigationFormat
 from linepose.inputs.navigation.record import NavigationRecord, geodetic_record
 
 _FORMAT_MESSAGE: Final = b"\xa3\x95\x80"  # every log begins with the description of its messages
@@ -29,14 +35,11 @@ _FIELDS: Final = {
 log = logging.getLogger(__name__)
 
 
-class ArdupilotSection(GeodeticSection):
+class ArdupilotSection(AutopilotSection):
     """Keys of the format `ardupilot`."""
 
     format: Literal["ardupilot"] = Field(
         description="`ardupilot`: onboard logs of ArduPilot (.bin), with linepose[autopilot]."
-    )
-    maximum_fix_gap_s: PositiveFloat = Field(
-        DEFAULT_GAP_S, description="Longest time between two POS over which the position is interpolated (s)."
     )
 
 
@@ -46,14 +49,9 @@ def read(section: ArdupilotSection, folder: Path) -> NavigationRecord:
     return geodetic_record(poses, [], section)
 
 
-def _is_log(path: Path) -> dict[str, Any] | None:
-    if path.is_dir():
-        return None
-    with path.open("rb") as file:
-        return {} if file.read(len(_FORMAT_MESSAGE)) == _FORMAT_MESSAGE else None
-
-
-FORMAT: Final = NavigationFormat("ardupilot", ArdupilotSection, read, has_covariances=False, recognise=_is_log)
+FORMAT: Final = NavigationFormat(
+    "ardupilot", ArdupilotSection, read, has_covariances=False, recognise=partial(begins_with, start=_FORMAT_MESSAGE)
+)
 
 
 def _flight(path: Path) -> FlightLog:

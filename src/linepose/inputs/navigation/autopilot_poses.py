@@ -5,19 +5,30 @@ import logging
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field, PositiveFloat
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.inputs.navigation.positions_between import positions_between
+from linepose.inputs.navigation.format import GeodeticSection
+from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S, positions_between
 from linepose.inputs.navigation.record import Poses, check_increasing
 from linepose.inputs.navigation.usable_rows import usable_rows
 
 Stamps = NDArray[np.int64]
 
 log = logging.getLogger(__name__)
+
+
+class AutopilotSection(GeodeticSection):
+    """What both formats of autopilots may say."""
+
+    maximum_fix_gap_s: PositiveFloat = Field(
+        DEFAULT_GAP_S, description="Longest time between two positions over which they are interpolated (s)."
+    )
 
 
 @dataclass(frozen=True)
@@ -35,6 +46,14 @@ class FlightLog:
     gps_us: Stamps
     unix_us: Stamps
     names: tuple[str, str, str]
+
+
+def begins_with(path: Path, start: bytes) -> dict[str, Any] | None:
+    """No keys for a file that begins so; None for any other."""
+    if path.is_dir():
+        return None
+    with path.open("rb") as file:
+        return {} if file.read(len(start)) == start else None
 
 
 def package(name: str, path: Path) -> ModuleType:

@@ -5,16 +5,22 @@ vehicle_global_position, and the start of the clock is that of vehicle_gps_posit
 """
 
 import logging
+from functools import partial
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
-from pydantic import Field, PositiveFloat
+from pydantic import Field
 
 from linepose.errors import InputError
-from linepose.inputs.navigation.autopilot_poses import FlightLog, autopilot_poses, package
-from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
-from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
+from linepose.inputs.navigation.autopilot_poses import (
+    AutopilotSection,
+    FlightLog,
+    autopilot_poses,
+    begins_with,
+    package,
+)
+from linepose.inputs.navigation.format import NavigationFormat
 from linepose.inputs.navigation.record import NavigationRecord, geodetic_record
 from linepose.inputs.navigation.rosbag_axes import euler_of
 
@@ -27,13 +33,10 @@ log = logging.getLogger(__name__)
 Columns = dict[str, np.ndarray]
 
 
-class Px4Section(GeodeticSection):
+class Px4Section(AutopilotSection):
     """Keys of the format `px4`."""
 
     format: Literal["px4"] = Field(description="`px4`: logs of a PX4 autopilot (.ulg), with linepose[autopilot].")
-    maximum_fix_gap_s: PositiveFloat = Field(
-        DEFAULT_GAP_S, description="Longest time between two positions over which they are interpolated (s)."
-    )
 
 
 def read(section: Px4Section, folder: Path) -> NavigationRecord:
@@ -42,14 +45,9 @@ def read(section: Px4Section, folder: Path) -> NavigationRecord:
     return geodetic_record(poses, [], section)
 
 
-def _is_log(path: Path) -> dict[str, Any] | None:
-    if path.is_dir():
-        return None
-    with path.open("rb") as file:
-        return {} if file.read(len(_MAGIC)) == _MAGIC else None
-
-
-FORMAT: Final = NavigationFormat("px4", Px4Section, read, has_covariances=False, recognise=_is_log)
+FORMAT: Final = NavigationFormat(
+    "px4", Px4Section, read, has_covariances=False, recognise=partial(begins_with, start=_MAGIC)
+)
 
 
 def _flight(path: Path) -> FlightLog:
