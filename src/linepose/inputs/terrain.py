@@ -8,13 +8,13 @@ import numpy as np
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.inputs.height_raster import read_heights
 from linepose.inputs.local_frame import LocalFrame, geodetic_from_local, local_from_geodetic
 
 if TYPE_CHECKING:
     from pyproj import Transformer
 
 _STEP_M: Final = 0.5  # for the slope
-_LARGEST: Final = 50_000_000  # cells that are read
 
 
 @dataclass(frozen=True)
@@ -71,37 +71,23 @@ class Terrain:
 
 def read_terrain(path: Path, frame: LocalFrame | None, origin_m: Floats, height_offset_m: float) -> Terrain:
     """The height model of a file; raises InputError for one that cannot be used."""
-    import rasterio
     from pyproj import Transformer
     from pyproj.exceptions import ProjError
-    from rasterio.errors import RasterioIOError
 
-    place = "points.ground.dem"
+    key = "points.ground.dem"
     if frame is None:
-        raise InputError(place, str(path), "a survey whose place on the Earth is known", "add map_frame")
-    if not path.is_file():
-        raise InputError(str(path), "no such file", "a height model", f"correct {place}")
+        raise InputError(key, str(path), "a survey whose place on the Earth is known", "add map_frame")
+    raster = read_heights(path, key)
+    if raster.crs is None:
+        raise InputError(str(path), "no reference system", "one in the file", "add it with gdal_edit -a_srs")
     try:
-        with rasterio.open(path) as raster:
-            if raster.crs is None:
-                raise InputError(str(path), "no reference system", "one in the file", "add it with gdal_edit -a_srs")
-            if raster.width * raster.height > _LARGEST:
-                found = f"{raster.width} x {raster.height} cells"
-                raise InputError(str(path), found, f"at most {_LARGEST:.0e}", "cut out the survey with gdalwarp")
-            heights = raster.read(1, masked=True).astype(float)
-            to_cell = np.array(~raster.transform, dtype=float).reshape(3, 3)
-            from_wgs84 = Transformer.from_crs("EPSG:4326", raster.crs, always_xy=True)
+        from_wgs84 = Transformer.from_crs("EPSG:4326", raster.crs, always_xy=True)
     except ProjError:
         raise InputError(str(path), "a system of no place on the Earth", "one of the Earth", "warp it") from None
-    except RasterioIOError as error:
-        raise InputError(
-            str(path), " ".join(str(error).split())[:80], "a raster of heights", f"correct {place}"
-        ) from None
+    to_cell = np.array(~raster.transform, dtype=float).reshape(3, 3)
     to_cell[:2, 2] -= 0.5
-    missing = np.ma.getmaskarray(heights) | ~np.isfinite(heights.filled(np.nan))
-    if missing.all():
-        raise InputError(str(path), "no height at all", "a raster of heights", f"correct {place}")
-    filled = _filled(heights.filled(0.0), missing)
+    missing = np.isnan(raster.height_m)
+    filled = _filled(raster.height_m.astype(float), missing)
     return Terrain(filled, missing, to_cell, from_wgs84, frame, origin_m, height_offset_m)
 
 
