@@ -7,7 +7,7 @@ STAMP := .venv/installed
 
 SHELL := bash
 
-.PHONY: help reproduce test check types style docs bench readme-bench reference images lock clean
+.PHONY: help environment reproduce test check types style docs bench readme-bench reference images lock clean
 
 help: ## What can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -17,6 +17,8 @@ $(STAMP): pyproject.toml requirements.lock
 	$(BIN)/python -m pip install --quiet --requirement requirements.lock
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
+
+environment: $(STAMP) ## The environment in .venv, and nothing else
 
 reproduce: $(STAMP) ## Run every experiment; results go to results/
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
