@@ -1,5 +1,6 @@
 """The pose as people ask for it: rotation vector and Euler angles, beside the hand measurement."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from linepose.geometry.pose import euler_covariance, euler_pose
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
 
 _POSITION = ("r_x forward", "r_y right", "r_z down")
+_DEGREES = "°"
 _GIMBAL_DEG = 89.0
 
 
@@ -27,7 +29,7 @@ class PoseNumber:
     @property
     def difference(self) -> float:
         """Estimate minus hand measurement."""
-        return self.estimate - self.hand
+        return self._from(self.hand)
 
     @property
     def difference_sigmas(self) -> float:
@@ -37,7 +39,12 @@ class PoseNumber:
     @property
     def error_sigmas(self) -> float | None:
         """Estimate minus truth in sigmas of the estimate."""
-        return None if self.truth is None else (self.estimate - self.truth) / self.sigma
+        return None if self.truth is None else self._from(self.truth) / self.sigma
+
+    def _from(self, value: float) -> float:
+        """Estimate minus a value, of angles in degrees the short way round."""
+        difference = self.estimate - value
+        return math.remainder(difference, 360.0) if self.unit == _DEGREES else difference
 
 
 def rotation_vector_numbers(
@@ -62,7 +69,7 @@ def euler_numbers(
     ]
     numbers = _numbers(
         [*_POSITION, "roll", "pitch", "yaw"],
-        ["m"] * 3 + ["°"] * 3,
+        ["m"] * 3 + [_DEGREES] * 3,
         in_euler[0],
         in_euler[1],
         None if truth is None else scale @ euler_pose(truth),

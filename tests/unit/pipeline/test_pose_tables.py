@@ -39,6 +39,16 @@ def test_euler_angles_and_their_sigmas_follow_the_samples():
     np.testing.assert_allclose([number.hand for number in numbers], [-56, 0, -90], atol=1e-9)
 
 
+def test_angles_on_either_side_of_half_a_turn_are_near_to_each_other():
+    def pose(roll_deg):
+        turned = rotation_vector_pose([0.0, 0.0, 0.0, np.radians(roll_deg), 0.2, 0.3])
+        return PoseWithCovariance(turned, COVARIANCE)
+
+    roll, *_ = euler_numbers(pose(-173.0), pose(180.0), pose(175.0).pose)
+    assert roll.difference == pytest.approx(7.0)
+    assert roll.error_sigmas == pytest.approx(12.0 / roll.sigma)
+
+
 def test_euler_angles_that_mean_nothing_are_left_out():
     upright = rotation_vector_pose([0.0, 0.0, 0.0, 0.0, np.radians(89.9), 0.3])
     assert euler_numbers(PoseWithCovariance(upright, COVARIANCE), ESTIMATE) == []

@@ -24,7 +24,10 @@ def adjustment_section(calibration: Calibration) -> SectionOnPage | None:
         return None
     own = is_adjusted(calibration.platform_file)
     levels, found = levels_by_set(calibration), halves(calibration)
-    views = calibration.results.table("adjusted_views", VIEWS)
+    views = with_least_weights(
+        calibration.results.table("adjusted_views", VIEWS),
+        calibration.results.table("adjusted_measurements", MEASUREMENTS),
+    )
     first = next(iter(levels.values()))
     paragraphs = [
         halves_sentence(found),
@@ -59,13 +62,19 @@ def _of_halves(one: Halves) -> str:
     return f"{one.noise_model}, {set_in_words(one.set)}"
 
 
+def with_least_weights(views: pd.DataFrame, measurements: pd.DataFrame) -> pd.DataFrame:
+    """`VIEWS` with `least_weight`: of the observation or of the measurement in it that counts least."""
+    of_measurements = views["observation"].map(measurements.groupby("observation")["weight"].min())
+    return views.assign(least_weight=np.fmin(views["weight"], of_measurements))
+
+
 def views_sentence(views: pd.DataFrame) -> str:
-    """Which observations are far off, and what their errors look like; `views` as in `VIEWS`."""
-    doubtful = views[views["fault"] != ""].sort_values("weight")
+    """Which observations are far off, and what their errors look like; `views` as `with_least_weights` has them."""
+    doubtful = views[views["fault"] != ""].sort_values("least_weight")
     if doubtful.empty:
         return "No observation is far off, and none was removed."
     named = "; ".join(
-        f"{row['observation']}, weight {row['weight']:.2g}, {FAULT_WORDS[row['fault']]}"
+        f"{row['observation']}, weight {row['least_weight']:.2g}, {FAULT_WORDS[row['fault']]}"
         for _, row in doubtful.iterrows()
     )
     return f"Far off, but not removed: observation {named}."

@@ -97,14 +97,14 @@ def halves_table(anchor: str, found: Sequence[Halves]) -> TableOnPage:
 
 
 def view_table(anchor: str, views: pd.DataFrame) -> TableOnPage:
-    """Each observation's weight, what its errors look like if it is far off, and its mean correction."""
+    """Each observation's weight, the least of it and its measurements, what its errors look like, mean correction."""
     rows = []
     for _, row in views.iterrows():
         mean = CORRECTION_SCALE * row[list(CORRECTION_COLUMNS)].to_numpy(dtype=float)
         cells = [f"{value + 0.0:.{1 if k < 3 else 3}f}" if np.isfinite(value) else "" for k, value in enumerate(mean)]
-        weight = f"{row['weight']:.2f}" if np.isfinite(row["weight"]) else ""
-        rows.append([str(row["observation"]), weight, FAULT_WORDS.get(row["fault"], ""), *cells])
-    heads = ["Observation", "Weight", "Errors look", *CORRECTION_HEADS]
+        weights = [f"{row[name]:.2f}" if np.isfinite(row[name]) else "" for name in ("weight", "least_weight")]
+        rows.append([str(row["observation"]), *weights, FAULT_WORDS.get(row["fault"], ""), *cells])
+    heads = ["Observation", "Weight", "Least, of a measurement too", "Errors look", *CORRECTION_HEADS]
     sentence = f"weight and mean correction of {len(rows)} observations"
     return TableOnPage(anchor, "Observations", sentence, heads, rows)
 

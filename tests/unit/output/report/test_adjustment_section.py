@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from linepose.output.report.adjustment import adjustment_section, views_sentence
+from linepose.output.report.adjustment import adjustment_section, views_sentence, with_least_weights
 from linepose.output.report.adjustment_words import boresight_sentence, levels_sentence, sigmas_sentence
 from linepose.output.report.page import PlatformOnPage, render_platform_page
 from linepose.output.report.platform_sections import leading_sections, platform_sections
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.summary import summarise
 from unit import made_up
-from unit.made_up_adjustment import adjusted_views, levels
+from unit.made_up_adjustment import adjusted_measurements, adjusted_views, levels
 
 REPORTED_RAD = np.radians([0.2, 0.2, 0.1])
 
@@ -73,11 +73,12 @@ def test_a_boresight_has_the_survey_s_own_attitude_error_in_it_where_drift_outla
 
 
 def test_observations_that_are_far_off_are_named_with_what_their_errors_look_like():
-    assert views_sentence(adjusted_views()) == (
-        "Far off, but not removed: observation 6, weight 0.1, as if its clock were off; 5, weight 0.8, as if "
-        "points were mislabelled."
+    views = with_least_weights(adjusted_views(), adjusted_measurements())
+    assert views_sentence(views) == (
+        "Far off, but not removed: observation 5, weight 0.05, as if points were mislabelled; 6, weight 0.1, as if its "
+        "clock were off."
     )
-    assert "No observation is far off" in views_sentence(adjusted_views().assign(fault=""))
+    assert "No observation is far off" in views_sentence(views.assign(fault=""))
 
 
 def test_beside_the_published_model_the_adjustment_leads_with_both_poses(beside):
@@ -101,7 +102,8 @@ def test_beside_the_published_model_the_adjustment_leads_with_both_poses(beside)
     assert [row[-1] for row in sigmas.rows] == ["look wrong", "look wrong", "fit"]
     assert sigmas.rows[2][1:4] == ["1.00", "1.10", "1.1 (0.8 to 1.5)"]
     assert of_halves.rows[0] == ["adjustment", "all observations", "31", "2.20", "0.95"]
-    assert views.rows[5][:4] == ["6", "0.10", "as if its clock were off", "2.0"]
+    assert views.rows[4][1:4] == ["0.80", "0.05", "as if points were mislabelled"]
+    assert views.rows[5][:5] == ["6", "0.10", "0.10", "as if its clock were off", "2.0"]
     assert "adjustment" not in "".join(one.anchor for one in platform_sections(beside))
 
 
