@@ -2,11 +2,14 @@
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from linepose.cli.options import HERE, Name, ProjectFolder
+
+if TYPE_CHECKING:
+    from linepose.config.map import MapSection
 
 
 def map_scans(
@@ -15,6 +18,10 @@ def map_scans(
         Path | None, typer.Option("--output", "-o", help="Folder to write into.", show_default="results/NAME/map")
     ] = None,
     stage: Annotated[str, typer.Option(help="inliers, all, or hand_measured.")] = "inliers",
+    bands: Annotated[
+        str | None,
+        typer.Option(help="Bands of a GeoTIFF, as 30,60,90 or all.", show_default="map.geotiff of the platform's file"),
+    ] = None,
     cores: Annotated[
         int | None, typer.Option("--cores", "-c", min=1, help="Processor cores.", show_default="all")
     ] = None,
@@ -38,9 +45,30 @@ def map_scans(
         raise InputError(str(folder), "no result", "that of a run", f"linepose run {name}")
     data, platform = root / loaded.folder(name), loaded.platforms[name]
     calibration = Calibration.from_results(folder, platform, loaded.study.outliers.threshold_px, stage, data)
-    maps = platform_map(calibration, platform.map or MapSection(), data)
+    section = _with_bands(platform.map or MapSection(), bands)
+    maps = platform_map(calibration, section, data)
     target = output or folder / "map"
     for number, made in enumerate(write_maps(maps, target, cores or os.cpu_count() or 1), start=1):
         typer.echo(f"{number} of {len(maps.paths)}: {scan_sentence(made)}")
     tell_outdated(loaded, root, name)
     typer.echo(target)
+
+
+def _with_bands(section: "MapSection", bands: str | None) -> "MapSection":
+    """The section with these bands written as GeoTIFF; raises InputError for words that name none."""
+    from pydantic import ValidationError
+
+    from linepose.config.map import GeotiffSection
+    from linepose.errors import InputError
+
+    if bands is None:
+        return section
+    known = {} if section.geotiff is None else section.geotiff.model_dump()
+    wanted = "all" if bands == "all" else bands.split(",")
+    try:
+        geotiff = GeotiffSection.model_validate({**known, "bands": wanted}, strict=False)
+    except ValidationError:
+        raise InputError(
+            "--bands", repr(bands), "numbers from 1, each once, or all", "write --bands 30,60,90"
+        ) from None
+    return section.model_copy(update={"geotiff": geotiff})

@@ -2,9 +2,29 @@
 
 from typing import Literal
 
-from pydantic import Field, NonNegativeFloat, model_validator
+from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt, field_validator, model_validator
 
 from linepose.settings import Settings
+
+
+class GeotiffSection(Settings):
+    """A cloud-optimised GeoTIFF of each scan on the map."""
+
+    bands: list[PositiveInt] | Literal["all"] = Field(
+        description="Bands of the scan, counted from 1, or `all`; a picture has one, the mean of its channels."
+    )
+    resampling: Literal["nearest", "bilinear"] = Field(
+        "nearest",
+        description="Of a cell: the value of the nearest pixel, or linear between the four around its centre.",
+    )
+    compression: Literal["none", "deflate", "zstd"] = Field("none", description="Of the file, without loss.")
+
+    @field_validator("bands")
+    @classmethod
+    def _has_bands(cls, bands: list[int] | Literal["all"]) -> list[int] | Literal["all"]:
+        if bands != "all" and (not bands or len(set(bands)) < len(bands)):
+            raise ValueError("each band once, or `all`")
+        return bands
 
 
 class MapSection(Settings):
@@ -26,6 +46,13 @@ class MapSection(Settings):
         description="Sigma of the ground's height (m). If not given, that of the points' plane; 0.05 of a "
         "height or an elevation model.",
     )
+
+    cell_m: PositiveFloat | None = Field(
+        None,
+        description="Side of a cell of the maps (m). If not given, the larger of the usual distances between "
+        "neighbouring pixels and between neighbouring lines of the scan.",
+    )
+    geotiff: GeotiffSection | None = Field(None, description="Bands that are written as GeoTIFF; none if null.")
 
     @model_validator(mode="after")
     def _has_its_ground(self) -> "MapSection":

@@ -1,7 +1,9 @@
 """Files of a map: written together or not at all, never over a link or a device; ENVI headers beside them."""
 
 import errno
+import glob
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -13,7 +15,7 @@ from numpy.typing import NDArray
 
 from linepose.errors import InputError
 
-_ENVI_TYPES: Final = {"float32": 4, "float64": 5}
+_ENVI_TYPES: Final = {"int32": 3, "float32": 4, "float64": 5}
 
 
 @contextmanager
@@ -62,10 +64,13 @@ def check_folder(folder: Path) -> None:
 
 
 def remove_leftovers(folder: Path, names: Sequence[str]) -> None:
-    """Remove what a killed run left of files of these names."""
+    """Remove what a killed run left of files of these names, and of folders beside them."""
     for name in names:
-        for path in folder.glob(f".????????-{name}"):
-            path.unlink(missing_ok=True)
+        for path in folder.glob(f".????????-{glob.escape(name)}*"):
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink(missing_ok=True)
 
 
 def envi_header(shape: tuple[int, int], bands: Sequence[str], dtype: str, about: str) -> str:

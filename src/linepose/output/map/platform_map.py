@@ -25,6 +25,7 @@ from linepose.output.map.files import check_target, remove_leftovers, written_to
 from linepose.output.map.frame import survey_map
 from linepose.output.map.ground import ground_of
 from linepose.output.map.places import Navigation, ScanOnMap
+from linepose.output.map.rasters import ScanRasters, write_rasters
 from linepose.output.map.sources import MountedCamera
 from linepose.output.map.write_places import places_header, sigma_header, write_places
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, LEVELS
@@ -43,7 +44,8 @@ _RECORD: Final = "-map.json"
 class ScanMap:
     """A scan that is on the map: its name, how many pixels have no place and why, and its error budget.
 
-    `counts` by the names of STATES; `budget` has columns as in `BUDGET`. `is_new` unless an earlier run had made it.
+    `counts` by the names of STATES; `budget` has columns as in `BUDGET`; `rasters`: its lookup table and GeoTIFF.
+    `is_new` unless an earlier run had made all of it.
     """
 
     name: str
@@ -51,6 +53,7 @@ class ScanMap:
     counts: dict[str, int]
     budget: pd.DataFrame
     is_new: bool
+    rasters: ScanRasters | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +64,7 @@ class PlatformMap:
     paths: dict[int, Path]
     calibration: Calibration
     source: ScansSection
+    section: "MapSection"
 
     def scan_on_map(self, number: int) -> ScanOnMap:
         """What the places of the scan of an observation rest on; raises InputError where its times are not known."""
@@ -103,7 +107,7 @@ def platform_map(calibration: Calibration, section: "MapSection", folder: Path) 
     scan = ScanOnMap("", np.empty(0, dtype=np.int64), mounted, navigation, ground, frame, np.zeros(6))
     paths = select_scans(folder, source.scans, source.left_out)
     _check_names(paths)
-    return PlatformMap(scan, paths, calibration, source)
+    return PlatformMap(scan, paths, calibration, source, section)
 
 
 def _check_names(paths: dict[int, Path]) -> None:
@@ -124,14 +128,16 @@ def write_maps(platform: PlatformMap, output: Path, n_cores: int = 1) -> Iterato
     """
     common = _digest(platform.scan)
     for number in platform.paths:
-        scan = platform.scan_on_map(number)
-        yield _write_scan(scan, output, common, n_cores)
+        scan, path = platform.scan_on_map(number), platform.paths[number]
+        digest = hashlib.sha256(common.encode() + scan.time_us.tobytes() + scan.correction.tobytes()).hexdigest()
+        made = _write_scan(scan, output, digest, n_cores)
+        rasters = write_rasters(path, scan.shape, scan.frame, platform.section, output, digest, n_cores)
+        yield replace(made, rasters=rasters, is_new=made.is_new or rasters.is_new)
 
 
-def _write_scan(scan: ScanOnMap, output: Path, common: str, n_cores: int) -> ScanMap:
+def _write_scan(scan: ScanOnMap, output: Path, digest: str, n_cores: int) -> ScanMap:
     names = [f"{scan.name}{ending}" for ending in _ENDINGS]
     record = output / f"{scan.name}{_RECORD}"
-    digest = hashlib.sha256(common.encode() + scan.time_us.tobytes() + scan.correction.tobytes()).hexdigest()
     finished = _finished(record, [output / name for name in names], digest)
     if finished is not None:
         return finished

@@ -10,6 +10,7 @@ _MEANINGS = {
     "n_in_hole": "end in a hole of it",
     "n_met_twice": "meet the ground more than once",
 }
+_WITHOUT_PLACE = ("n_missed", "n_outside", "n_in_hole")
 
 
 def scan_sentence(made: ScanMap) -> str:
@@ -20,4 +21,16 @@ def scan_sentence(made: ScanMap) -> str:
     told += [
         f"{made.counts[key]} of {made.n_pixels} pixels {words}" for key, words in _MEANINGS.items() if made.counts[key]
     ]
+    told += _of_rasters(made)
     return "; ".join(told) + ("" if made.is_new else " (made before)")
+
+
+def _of_rasters(made: ScanMap) -> list[str]:
+    """How large the cells are, how many have no pixel of their own, and how many pixels no cell."""
+    cells = made.rasters
+    if cells is None or not cells.n_rows:
+        return []
+    placed = made.n_pixels - sum(made.counts[key] for key in _WITHOUT_PLACE)
+    known = cells.n_cells + cells.n_filled
+    filled = f"{cells.n_filled} of {known} cells of {cells.cell_m:g} m are filled from beside"
+    return [filled, f"{placed - cells.n_cells} pixels are not the nearest of their cell's centre"]
