@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
+import rasterio
 from scipy.ndimage import map_coordinates
 
 from linepose.survey.observations import POSITION_COLUMNS
@@ -20,17 +21,30 @@ def bands_at(path, kind, n_bands, marks):
     return np.stack([map_coordinates(bands[:, band], places, order=1) for band in range(n_bands)], axis=-1)
 
 
+def mark_in_map(path, near_m, half_m=0.04):
+    """Easting and northing of the centroid of the light around a place in a GeoTIFF."""
+    with rasterio.open(path) as file:
+        bounds = np.concatenate([near_m - half_m, near_m + half_m])
+        window = file.window(*bounds).round_offsets().round_lengths()
+        light, transform = file.read(1, window=window).astype(float), file.window_transform(window)
+    weight = np.clip(light - np.quantile(light, 0.6), 0, None).ravel()
+    row, column = (np.average(one.ravel() + 0.5, weights=weight) for one in np.indices(light.shape))
+    return np.array([transform.c + transform.a * column, transform.f + transform.e * row])
+
+
 def test_marks_on_the_board_lie_where_the_map_says(copied):
-    done = copied.linepose("map", "tiny", "--cores", "2")
+    done = copied.linepose("map", "tiny", "--cores", "2", "--bands", "1")
     assert done.returncode == 0, done.stderr
     results = copied.folder / "results" / "tiny"
     truth = pd.read_parquet(results / "truth.parquet").query("visible")
     true_m = truth[[f"point_{name}" for name in POSITION_COLUMNS]].to_numpy()[:, [1, 0, 2]] * [1, 1, -1]
+    in_geotiff = np.full((len(truth), 2), np.nan)
     found, sigma = np.full((len(truth), 3), np.nan), np.full((len(truth), 4), np.nan)
     for number in truth["observation"].unique():
         stem, mine = results / "map" / f"observation-{number:02d}", (truth["observation"] == number).to_numpy()
         found[mine] = bands_at(f"{stem}-igm.dat", np.float64, 3, truth[mine])
         sigma[mine] = bands_at(f"{stem}-sigma.dat", np.float32, 4, truth[mine])
+        in_geotiff[mine] = [mark_in_map(f"{stem}.tif", near_m) for near_m in true_m[mine, :2]]
         record = json.loads((results / "map" / f"{stem.name}-map.json").read_text())
         assert {row["source"] for row in record["budget"]} >= {"pose", "intrinsics", "navigation", "pixel", "ground"}
     error = found - true_m
@@ -38,5 +52,6 @@ def test_marks_on_the_board_lie_where_the_map_says(copied):
     assert np.all(np.hypot(error[:, 0], error[:, 1]) < 0.03)  # a hundredth of the range
     # the points' plane errs with the camera's height, which the paper's likelihood states too surely
     assert np.ptp(error[:, 2]) < 0.01
-    again = copied.linepose("map", "tiny")
+    assert np.all(np.abs(in_geotiff - true_m[:, :2]) < np.minimum(3 * sigma[:, :2], 0.03))
+    again = copied.linepose("map", "tiny", "--bands", "1")
     assert again.stdout.count("(made before)") == 4

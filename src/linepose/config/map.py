@@ -41,6 +41,11 @@ class MapSection(Settings):
         description="Elevation model: path of a GeoTIFF below the data's folder, in the survey's projected system (or, "
         "of a survey in local coordinates, without a system: east, north), heights in metres.",
     )
+    height_offset_m: float = Field(
+        0.0,
+        description="Added to the heights of `height_m` or `dem` to get those of the positions (m): the geoid's height "
+        "where they count from sea level and the positions' from the ellipsoid.",
+    )
     sigma_ground_m: NonNegativeFloat | None = Field(
         None,
         description="Sigma of the ground's height (m). If not given, that of the points' plane; 0.05 of a "
@@ -59,4 +64,6 @@ class MapSection(Settings):
         for kind, key, value in (("height", "height_m", self.height_m), ("dem", "dem", self.dem)):
             if (self.ground == kind) != (value is not None):
                 raise ValueError(f"{key} with `ground: {kind}`, and without it none")
+        if self.ground == "points" and self.height_offset_m:
+            raise ValueError("no height_offset_m with `ground: points`, whose heights are the positions' own")
         return self

@@ -10,8 +10,8 @@ from linepose.output.map.frame import SurveyMap
 from linepose.output.map.ground import Ground
 
 
-def read_elevation(path: Path, frame: SurveyMap, sigma_m: float) -> Ground:
-    """The heights of a GeoTIFF file; cells without a value are holes.
+def read_elevation(path: Path, frame: SurveyMap, sigma_m: float, height_offset_m: float = 0.0) -> Ground:
+    """The heights of a GeoTIFF file, the offset added to them; cells without a value are holes.
 
     Raises InputError where the file is missing, is no grid of heights, or lies in another system than the survey.
     """
@@ -26,7 +26,8 @@ def read_elevation(path: Path, frame: SurveyMap, sigma_m: float) -> Ground:
     _check(raster, frame, path)
     south, east = -raster.transform.e, raster.transform.a
     corner = (raster.transform.f - south / 2, raster.transform.c + east / 2)
-    return Ground(sigma_m, np.array([0.0, 0.0, -1.0]), 0.0, raster.height_m, corner, (south, east))
+    heights_m = raster.height_m + np.float32(height_offset_m)
+    return Ground(sigma_m, np.array([0.0, 0.0, -1.0]), 0.0, heights_m, corner, (south, east))
 
 
 def _check(raster: HeightRaster, frame: SurveyMap, path: Path) -> None:

@@ -81,13 +81,13 @@ def plane_through(points_m: ArrayLike, sigma_m: float | None = None) -> Ground:
 
 def ground_of(calibration: Calibration, section: "MapSection", frame: "SurveyMap", folder: Path) -> Ground:
     """The ground that a platform's file asks for, `folder` being that of its data; raises InputError."""
-    sigma_m = section.sigma_ground_m
+    sigma_m, offset_m = section.sigma_ground_m, section.height_offset_m
     if section.height_m is not None:
-        return flat_ground(section.height_m, _SIGMA_M if sigma_m is None else sigma_m)
+        return flat_ground(section.height_m + offset_m, _SIGMA_M if sigma_m is None else sigma_m)
     if section.dem is not None:
         from linepose.output.map.elevation import read_elevation
 
-        return read_elevation(folder / section.dem, frame, _SIGMA_M if sigma_m is None else sigma_m)
+        return read_elevation(folder / section.dem, frame, _SIGMA_M if sigma_m is None else sigma_m, offset_m)
     points = calibration.points
     points = points[points["stage"] == INLIERS]
     plane = plane_through(points[list(POSITION_COLUMNS)].to_numpy(), sigma_m)

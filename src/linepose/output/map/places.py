@@ -113,6 +113,15 @@ class ScanOnMap:
         covariance = reported.covariance[nearest_rows(reported.time_us, times)]
         return position + self.correction[:3], euler + self.correction[3:], covariance
 
+    def motion(self, first: int, end: int) -> Floats:
+        """How the body moves from line to line at these lines: position (m) and Euler angles (rad); (n, 6)."""
+        begin, last = max(first - 1, 0), min(end + 1, self.shape[0])
+        if last - begin < 2:
+            return np.zeros((end - first, 6))
+        position, euler = self.navigation.pose_at(self.navigation.log, self.time_us[begin:last])
+        pose = np.concatenate([position - position[0], np.unwrap(euler, axis=0)], axis=1)
+        return np.asarray(np.gradient(pose, axis=0)[first - begin : end - begin])
+
     def places(self, first: int, end: int, sources: Collection[Source] = SOURCES) -> Places:
         """The places of all pixels of lines first to end (exclusive), with the sigmas that these sources cause."""
         position, euler, reported = self.bodies(first, end)
@@ -124,7 +133,7 @@ class ScanOnMap:
         on_the_ground(
             centre,
             body,
-            line_covariances(mounted, euler, reported, sources),
+            line_covariances(mounted, euler, reported, self.motion(first, end), sources),
             mounted.turn,
             self._x,
             pixel_variances(mounted, sources, ground.sigma_m),

@@ -72,18 +72,20 @@ def pixel_variances(mounted: MountedCamera, sources: Collection[Source], sigma_g
     if "pixel" in sources:
         along_px = sigmas.u_px * (1.0 if mounted.levels is None else mounted.levels.pixel)
         variances[:, 0] += (slope * along_px / focal) ** 2
-        variances[:, 1] += (sigmas.v_px / focal) ** 2
+        # of a late line that an adjustment has found, the covariance of the line tells instead
+        variances[:, 1] += (sigmas.v_px / focal) ** 2 if mounted.levels is None else 0.0
     if "ground" in sources:
         variances[:, 2] = sigma_ground_m**2
     return variances
 
 
 def line_covariances(
-    mounted: MountedCamera, euler_rad: Floats, reported: Floats, sources: Collection[Source]
+    mounted: MountedCamera, euler_rad: Floats, reported: Floats, motion: Floats, sources: Collection[Source]
 ) -> Floats:
     """Covariances (L, 6, 6) of the camera's centre (m) and of a small turn of it (rad), both in world axes.
 
-    `euler_rad` (L, 3): roll, pitch, yaw of the body; `reported` (L, 6, 6): what the navigation says of itself.
+    `euler_rad` (L, 3): roll, pitch, yaw of the body; `reported` (L, 6, 6): what the navigation says of itself; `motion`
+    (L, 6): of the body from line to line, position (m) and Euler angles (rad), by which a pixel that is late is wrong.
     """
     body = matrix_from_euler(euler_rad)
     total = np.zeros((len(euler_rad), 6, 6))
@@ -92,13 +94,19 @@ def line_covariances(
         by_pose[:, :3, :3] = body
         by_pose[:, 3:, 3:] = body @ left_jacobian_so3(mounted.pose[3:])
         total += by_pose @ mounted.covariance @ np.swapaxes(by_pose, -1, -2)
-    if "navigation" in sources:
+    is_late = "pixel" in sources and mounted.levels is not None
+    if "navigation" in sources or is_late:
+        of_body = np.zeros_like(total)
+        if "navigation" in sources:
+            of_body += mounted.scaled(reported)
+        if is_late and mounted.levels is not None:
+            of_body += mounted.levels.lateness**2 * motion[:, :, None] * motion[:, None, :]
         turn = small_rotation_by_euler(euler_rad)
         by_body = np.zeros_like(total)
         by_body[:, :3, :3] = np.eye(3)
         by_body[:, :3, 3:] = -skew(body @ mounted.pose[:3]) @ turn
         by_body[:, 3:, 3:] = turn
-        total += by_body @ mounted.scaled(reported) @ np.swapaxes(by_body, -1, -2)
+        total += by_body @ of_body @ np.swapaxes(by_body, -1, -2)
     return total
 
 

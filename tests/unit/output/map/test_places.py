@@ -47,13 +47,17 @@ def drawn(strip, source, line, pixels, rng, n):
     along = pixels + normal("pixel", n, len(pixels)) * s.u_px * strip.mounted.levels.pixel
     k1, k2 = camera.k1 + of_camera[:, 2] * s.k1, camera.k2 + of_camera[:, 3] * s.k2
     x = undistort((along - centre_px) / focal_px, k1, k2)
-    v = normal("pixel", n, len(pixels)) * s.v_px / camera.focal_length_px
-    body, turn = matrix_from_euler(euler + body_error[:, 3:]), matrix_from_rotation_vector(pose[:, 3:])
-    centre = position + body_error[:, :3] + np.einsum("nij,nj->ni", body, pose[:, :3])
-    direction = np.einsum("nij,njk,npk->npi", body, turn, np.stack([x, v, np.ones_like(x)], axis=-1))
+    late = normal("pixel", n, len(pixels), 1) * strip.mounted.levels.lateness * strip.motion(line, line + 1)[0]
+    position, euler = (
+        np.asarray(one) + body_error[:, None, part] + late[..., part]
+        for one, part in ((position, np.s_[:3]), (euler, np.s_[3:]))
+    )
+    body, turn = matrix_from_euler(euler), matrix_from_rotation_vector(pose[:, 3:])
+    centre = position + np.einsum("npij,nj->npi", body, pose[:, :3])
+    direction = np.einsum("npij,njk,npk->npi", body, turn, np.stack([x, np.zeros_like(x), np.ones_like(x)], axis=-1))
     down = strip.ground.offset + normal("ground", n, 1) * strip.ground.sigma_m
-    reach = (-down - centre[:, None, 2]) / direction[..., 2]
-    return (centre[:, None] + reach[..., None] * direction)[..., [1, 0, 2]] * [1, 1, -1]
+    reach = (-down - centre[..., 2]) / direction[..., 2]
+    return (centre + reach[..., None] * direction)[..., [1, 0, 2]] * [1, 1, -1]
 
 
 @pytest.mark.parametrize("source", [*SOURCES, "all"])
@@ -66,6 +70,17 @@ def test_sigmas_are_those_of_drawn_errors(source):
     np.testing.assert_allclose(sigma[2], spread[2], rtol=0.05, atol=1e-7)
     off = np.linalg.norm((draws - draws.mean(axis=0))[..., :2], axis=-1)
     np.testing.assert_allclose(np.quantile(off, 0.95, axis=0), sigma[3], rtol=0.05)
+
+
+def test_motion_is_that_from_line_to_line_whatever_the_block():
+    strip = scan()
+    position, euler, _ = strip.bodies(0, 40)
+    whole = strip.motion(0, 40)
+    np.testing.assert_allclose(
+        whole[10], np.concatenate([position[11] - position[9], euler[11] - euler[9]]) / 2, atol=1e-8
+    )
+    np.testing.assert_allclose(np.concatenate([strip.motion(0, 7), strip.motion(7, 40)]), whole, atol=1e-8)
+    np.testing.assert_allclose(scan(n_lines=1).motion(0, 1), np.zeros((1, 6)))
 
 
 def test_radius_of_95_percent_is_known_at_both_ends():
