@@ -20,6 +20,7 @@ from linepose.inputs.navigation.autopilot_poses import (
     autopilot_poses,
     begins_with,
     package,
+    told_in_one_line,
 )
 from linepose.inputs.navigation.format import NavigationFormat
 from linepose.inputs.navigation.record import NavigationRecord, geodetic_record
@@ -61,7 +62,7 @@ def _flight(path: Path) -> FlightLog:
     if not fixed.all():
         log.warning("%s: %d GPS messages without a fix are left out", path, np.sum(~fixed))
     gps = gps[fixed]
-    unix_us = gps_time.unix_from_week(gps[:, 1].astype(np.int64), gps[:, 2] / 1e3)
+    unix_us = gps_time.unix_from_week(gps[:, 1].astype(np.int64), gps[:, 2] / 1e3, f"{path}, GPS")
     return FlightLog(
         attitude[:, 0].astype(np.int64),
         np.deg2rad(attitude[:, 1:]),
@@ -78,11 +79,12 @@ def _rows(path: Path) -> dict[str, list[list[float]]]:
     reader = package("pymavlink.DFReader", path)
     rows: dict[str, list[list[float]]] = {name: [] for name in _FIELDS}
     try:
-        messages = reader.DFReader_binary(str(path))
-        while (message := messages.recv_match(type=list(_FIELDS))) is not None:
-            if getattr(message, "I", 0) == 0:
-                name = message.get_type()
-                rows[name].append([float(getattr(message, one)) for one in _FIELDS[name]])
+        with told_in_one_line(path, "pymavlink"):
+            messages = reader.DFReader_binary(str(path))
+            while (message := messages.recv_match(type=list(_FIELDS))) is not None:
+                if getattr(message, "I", 0) == 0:
+                    name = message.get_type()
+                    rows[name].append([float(getattr(message, one)) for one in _FIELDS[name]])
     except Exception as error:  # pymavlink has no kind of its own
         found = " ".join(str(error).split()) or type(error).__name__
         raise InputError(str(path), found[:200], "a whole ArduPilot log (.bin)", "restore the log") from None

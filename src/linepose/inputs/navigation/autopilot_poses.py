@@ -2,23 +2,29 @@
 
 import importlib
 import logging
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryFile
 from types import ModuleType
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PositiveFloat
 
 from linepose.arrays import Floats
-from linepose.errors import InputError
+from linepose.errors import InputError, printable
 from linepose.inputs.navigation.format import GeodeticSection
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S, positions_between
 from linepose.inputs.navigation.record import Poses, check_increasing
 from linepose.inputs.navigation.usable_rows import usable_rows
 
 Stamps = NDArray[np.int64]
+
+_STDERR: Final = 2
 
 log = logging.getLogger(__name__)
 
@@ -63,6 +69,36 @@ def package(name: str, path: Path) -> ModuleType:
     except ImportError:
         found, expected = f"no package {name.partition('.')[0]}", "it, to read an autopilot's log"
         raise InputError(str(path), found, expected, "pip install 'linepose[autopilot]'") from None
+
+
+@contextmanager
+def told_in_one_line(path: Path, name: str) -> Iterator[list[str]]:
+    """What a package prints of broken parts of a log, a line a byte at worst, becomes one warning that counts it.
+
+    The caller may add remarks to the list.
+    """
+    remarks: list[str] = []
+    with TemporaryFile("w+", errors="replace") as said:
+        with redirect_stdout(said), redirect_stderr(said), _compiled_stderr(said.fileno()):
+            yield remarks
+        said.flush()
+        said.seek(0)
+        remarks += [line.strip() for line in said if line.strip()]
+    if remarks:
+        told = "%s: parts of the log are broken and left out: %d remarks of %s, the first: %s"
+        log.warning(told, path, len(remarks), name, printable(remarks[0]))
+
+
+@contextmanager
+def _compiled_stderr(to: int) -> Iterator[None]:
+    """What compiled code writes to the standard error goes to this file descriptor."""
+    kept = os.dup(_STDERR)
+    try:
+        os.dup2(to, _STDERR)
+        yield
+    finally:
+        os.dup2(kept, _STDERR)
+        os.close(kept)
 
 
 def autopilot_poses(flight: FlightLog, path: Path, maximum_gap_s: float) -> Poses:

@@ -19,6 +19,7 @@ from linepose.inputs.navigation.autopilot_poses import (
     autopilot_poses,
     begins_with,
     package,
+    told_in_one_line,
 )
 from linepose.inputs.navigation.format import NavigationFormat
 from linepose.inputs.navigation.record import NavigationRecord, geodetic_record
@@ -53,7 +54,10 @@ FORMAT: Final = NavigationFormat(
 def _flight(path: Path) -> FlightLog:
     pyulog = package("pyulog", path)
     try:
-        content = pyulog.ULog(str(path), [_ATTITUDE, _POSITION, *_GPS], disable_str_exceptions=True)
+        with told_in_one_line(path, "pyulog") as remarks:
+            content = pyulog.ULog(str(path), [_ATTITUDE, _POSITION, *_GPS], disable_str_exceptions=True)
+            if content.file_corruption:
+                remarks.append("a broken message")
     except Exception as error:  # pyulog has no kind of its own
         found = " ".join(str(error).split()) or type(error).__name__
         raise InputError(str(path), found[:200], "a whole PX4 log (.ulg)", "restore the log") from None

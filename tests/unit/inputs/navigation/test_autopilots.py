@@ -134,6 +134,20 @@ def test_file_of_another_kind_is_one_line(tmp_path, name, content):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize(("name", "share", "noise"), [("px4", 0.8, b"\xff"), ("ardupilot", 0.5, b"\0\1\2")])
+def test_broken_parts_are_told_in_one_line_and_nothing_is_printed(tmp_path, name, share, noise, caplog, capfd):
+    _, write, _, package = FORMATS[name]
+    pytest.importorskip(package)
+    write(tmp_path / "flight.log")
+    whole = (tmp_path / "flight.log").read_bytes()
+    middle = int(share * len(whole))
+    (tmp_path / "flight.log").write_bytes(whole[:middle] + noise * 20 + whole[middle:])
+    read(name, tmp_path)
+    told = [one for one in caplog.messages if "parts of the log are broken and left out" in one]
+    assert len(told) == 1
+    assert capfd.readouterr() == ("", "")
+
+
 @pytest.mark.parametrize("name", FORMATS)
 def test_extra_that_is_not_installed_is_named(tmp_path, name, monkeypatch):
     _, write, _, package = FORMATS[name]
