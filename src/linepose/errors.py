@@ -7,6 +7,7 @@ from typing import Final
 _OF_THE_SYSTEM: Final = {
     errno.ENOSPC: "make room on it",
     errno.EDQUOT: "make room within the quota",
+    errno.EFBIG: "raise the limit of a file's size (ulimit -f), or work on a disk that takes larger files",
     errno.EROFS: "work on one that can be written",
     errno.EACCES: "get the right to read and write there",
     errno.EPERM: "get the right to read and write there",

@@ -17,11 +17,15 @@ import pandas as pd
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.local_frame import LocalFrame, local_from_geodetic
+from linepose.inputs.number_files import check_cells
 from linepose.survey.point_knowledge import PointKnowledge
+from linepose.survey.point_names import WHAT, nameless
 
 _OWN: Final = ("north_m", "east_m", "down_m")
 _PROJECTED: Final = ("easting_m", "northing_m", "height_m")
 _GEOGRAPHIC: Final = ("latitude_deg", "longitude_deg", "height_m")
+_FARTHEST_M: Final = 1e8
+_LEAST_SIGMA_M: Final = 1e-6
 _REMEDY: Final = "correct points.control_points, or the file"
 
 
@@ -43,10 +47,10 @@ def read_control_points(
     for row, name in enumerate(table["id"]):
         flat = np.isfinite(position[row, :2]).all()
         sigma = np.array([horizontal[row] if flat else np.inf] * 2 + [vertical[row]])
-        if not np.isfinite(position[row, 2]) or not np.all(sigma > 0):
-            raise InputError(
-                f"{path}, row {row + 2}", "a height or sigma that is none", "a height and positive sigmas", _REMEDY
-            )
+        far = not np.all(np.abs(position[row][np.isfinite(position[row])]) < _FARTHEST_M)
+        if not np.isfinite(position[row, 2]) or far or not np.all(sigma >= _LEAST_SIGMA_M):
+            found, expected = "a place or sigma that is none", f"a height, and sigmas of {_LEAST_SIGMA_M:g} m or more"
+            raise InputError(f"{path}, row {row + 2}", found, expected, _REMEDY)
         known[name.strip()] = PointKnowledge(np.nan_to_num(position[row], nan=0.0), np.diag(sigma**-2.0))
     return known
 
@@ -58,10 +62,16 @@ def _table(path: Path) -> pd.DataFrame:
         table = pd.read_csv(path, dtype=str, skipinitialspace=True, keep_default_na=False)
     except (UnicodeDecodeError, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         raise InputError(str(path), " ".join(str(error).split())[:80], "a CSV table with a header", _REMEDY) from None
+    check_cells(table, path)
     table.columns = table.columns.str.strip()
+    twice = [name for name in table.columns if f"{name}.1" in table.columns]
+    if twice:
+        raise InputError(str(path), f"column {twice[0]} twice", "each column once", "remove or rename one of them")
     if "id" not in table.columns or table.empty:
         found = f"columns {', '.join(table.columns[:6])}" if len(table) else "no row"
         raise InputError(str(path), found, "id, coordinates and sigmas, a row a point", _REMEDY)
+    for row in nameless(table["id"])[:1]:
+        raise InputError(f"{path}, row {row + 2}, id", repr(table["id"].iloc[row]), WHAT, "correct or remove the row")
     for row in np.flatnonzero(table["id"].str.strip().duplicated())[:1]:
         name = table["id"].iloc[row].strip()
         raise InputError(f"{path}, row {row + 2}", f"point {name} again", "each name once", "rename or remove one")

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
@@ -68,6 +69,13 @@ def _read(path: Path, n_columns: int, n_first: int, what: str) -> tuple[Whole, l
                 where = f"{place}, column {column + n_first + 1}"
                 raise InputError(where, repr(cell), "a number", "mend the cell") from None
     return first, second, others
+
+
+def check_cells(table: pd.DataFrame, path: Path) -> None:
+    """Raise InputError where the rows of a CSV have more cells than its heading: pandas takes the first for names."""
+    if not isinstance(table.index, pd.RangeIndex):
+        found, expected = "rows of more cells than the heading", "a cell in each row for each column"
+        raise InputError(str(path), found, expected, "remove the commas at the rows' ends, or name all columns")
 
 
 def check_microseconds(time_us: Whole, path: Path, first_row: int = 1) -> None:

@@ -149,7 +149,11 @@ def _tables(section: TableSection, folder: Path) -> Iterator[Columns]:
         raise InputError(
             str(path), "no such file", "the times of the rows", "restore it, or correct source.navigation.times"
         )
-    times = path.read_text(encoding=section.encoding).split("\n")
+    try:
+        times = path.read_text(encoding=section.encoding).split("\n")
+    except UnicodeError:
+        found, expected = f"bytes that are not {section.encoding}", "a time a row"
+        raise InputError(str(path), found, expected, "restore it, or correct source.navigation.encoding") from None
     times = times[:-1] if not times[-1] else times
     if len(times) != len(cells):
         raise InputError(str(path), f"{len(times)} times", f"{len(cells)}, one a row of the log", "restore the files")

@@ -61,6 +61,9 @@ def to_rad(layout: TimedLayout) -> float:
 def euler_of(table: Columns, layout: TimedLayout, names: Sequence[Name]) -> Floats:
     """Our roll, pitch, yaw (K, 3) of three angles or of a quaternion."""
     values = table.numbers(names)
+    for row, column in np.argwhere(np.isinf(values))[:1]:
+        told = " ".join(parts_of(names[column]))
+        raise InputError(table.place(row, told), f"{values[row, column]:g}", "an angle", "mend or remove the row")
     if values.shape[1] == 3 and layout.attitude_axes == "ned":
         return values * to_rad(layout)
     if values.shape[1] == 3:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from linepose.errors import InputError
 from linepose.inputs import gps_time
+from linepose.inputs.number_files import plain_float
 from linepose.inputs.scans import header_time
 
 _COLUMNS: Final = 8  # frame, longitude, latitude, height, roll, pitch, heading, seconds of the GPS week
@@ -32,7 +33,7 @@ def hyspex_times(scan: Path, path: Path, week: int | None) -> tuple[NDArray[np.i
     for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), start=1):
         words = line.replace(",", " ").split()
         try:
-            values = [float(word) for word in words]
+            values = [plain_float(word) for word in words]
         except ValueError:
             values = []
         if not values and not seconds:
@@ -42,5 +43,5 @@ def hyspex_times(scan: Path, path: Path, week: int | None) -> tuple[NDArray[np.i
         elif words:
             expected = f"{_COLUMNS} numbers: frame, longitude, latitude, height, roll, pitch, heading, seconds"
             raise InputError(f"{path}, row {number}", repr(line[:_BRIEFLY]), expected, "mend or remove the row")
-    of_week_us = gps_time.microseconds(np.array(seconds, dtype=float), "s")
+    of_week_us = gps_time.microseconds(np.array(seconds, dtype=float), "s", str(path))
     return gps_time.unix_from_week_of_first(week, of_week_us, str(path)), above

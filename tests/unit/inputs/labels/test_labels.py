@@ -214,3 +214,10 @@ def test_scans_of_one_name_are_told(tmp_path):
         InputError, match=r"b/raw_0.hdr: found the name raw_0.hdr again, expected another name than a/raw_0"
     ):
         read_point_labels(tmp_path, "*.json", scans, 640)
+
+
+def test_rows_of_more_cells_than_the_heading_are_not_shifted(tmp_path):
+    """The point would be taken for the observation, and so on."""
+    (tmp_path / "labels.csv").write_text("observation,point,u_px,line\n3,1,7,20,30\n3,1,8,21,31\n")
+    with pytest.raises(InputError, match=r"labels.csv: found rows of more cells than the heading"):
+        read_point_labels(tmp_path, "labels.csv", SCANS, 640)

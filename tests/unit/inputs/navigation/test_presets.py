@@ -128,6 +128,14 @@ def test_kitti_takes_its_times_from_a_file(tmp_path):
     log = read_navigation(section, tmp_path).log
     np.testing.assert_array_equal(log.time_us, FIRST_US + 100_000 * np.arange(3))
     np.testing.assert_allclose(log.euler_rad[0], [0.1, 0.2, 0], atol=1e-9)
+    (tmp_path / "oxts" / "timestamps.txt").write_bytes(b"2023-11-14 \x8f22:13:20.250000000\n")
+    with pytest.raises(InputError, match=r"timestamps.txt: found bytes that are not utf-8, expected a time a row"):
+        read_navigation(section, tmp_path)
+    (tmp_path / "oxts" / "timestamps.txt").write_text("".join(f"2023-11-14 22:13:20.{n}50000000\n" for n in (2, 3, 4)))
+    (folder / "0000000001.txt").write_text(f"-33.8892 151.1937 42.5 0.1 1e400 1.5 {rest}\n")
+    with pytest.raises(InputError, match=r", row \d, 5: found inf, expected an angle; mend or remove the row"):
+        read_navigation(section, tmp_path)
+    (folder / "0000000001.txt").write_text(f"-33.8892 151.1937 42.5 0.1 -0.2 1.5 {rest}\n")
     (tmp_path / "oxts" / "timestamps.txt").write_text("2023-11-14 22:13:20.250000000\n")
     with pytest.raises(InputError, match=r"timestamps.txt: found 1 times, expected 3, one a row of the log"):
         read_navigation(section, tmp_path)

@@ -131,6 +131,11 @@ def test_headwalls_frames_under_another_name(tmp_path):
             {"time_stamps": "hyspex", "gps_week": WEEK},
             r"run-01.txt, row 1: found '1 2 3', expected 8 numbers",
         ),
+        (
+            lambda d: (d / "run-01.txt").write_text("1 2 3 4 5 6 7 280800\n2 2 3 4 5 6 7 2_8\n"),
+            {"time_stamps": "hyspex", "gps_week": WEEK},
+            r"run-01.txt, row 2: found '2 2 3 4 5 6 7 2_8', expected 8 numbers",
+        ),
         (lambda d: None, {"time_stamps": "rate"}, r"found no rate of the lines, .*; set source.line_rate_hz"),
         (lambda d: None, {"time_stamps": "rate", "line_rate_hz": 9.0}, r"; add run-01 to source.start_times"),
         (
