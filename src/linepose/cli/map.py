@@ -35,7 +35,7 @@ def map_scans(
     from linepose.config.map import MapSection
     from linepose.errors import InputError
     from linepose.output.map.platform_map import platform_map, write_maps
-    from linepose.output.map.words import scan_sentence
+    from linepose.output.map.words import budget_sentences, scan_sentence
     from linepose.pipeline.calibration import Calibration
     from linepose.pipeline.project_folder import find_project, load_platform_project
 
@@ -50,6 +50,8 @@ def map_scans(
     target = output or folder / "map"
     for number, made in enumerate(write_maps(maps, target, cores or os.cpu_count() or 1), start=1):
         typer.echo(f"{number} of {len(maps.paths)}: {scan_sentence(made)}")
+        for line in budget_sentences(made):
+            typer.echo(line)
     tell_outdated(loaded, root, name)
     typer.echo(target)
 

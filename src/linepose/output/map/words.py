@@ -25,6 +25,17 @@ def scan_sentence(made: ScanMap) -> str:
     return "; ".join(told) + ("" if made.is_new else " (made before)")
 
 
+def budget_sentences(made: ScanMap) -> list[str]:
+    """One line a place: how many millimetres of the horizontal standard deviation each source gives there."""
+    told = []
+    for place, rows in made.budget.groupby("place", sort=False):
+        by_source = rows.set_index("source")["horizontal_m"].astype(float).dropna() * _MM
+        parts = [f"{source} {value:.1f}" for source, value in by_source.items() if source != ALL]
+        if parts:
+            told.append(f"  one sigma at the {place}: {by_source[ALL]:.1f} mm; of that {', '.join(parts)}")
+    return told
+
+
 def _of_rasters(made: ScanMap) -> list[str]:
     """How large the cells are, how many have no pixel of their own, and how many pixels no cell."""
     cells = made.rasters

@@ -5,7 +5,10 @@ from linepose.errors import InputError
 from linepose.output.map.budget import ALL, budget_table
 from linepose.output.map.files import written_together
 from linepose.output.map.places import count_states
+from linepose.output.map.platform_map import ScanMap
+from linepose.output.map.rasters import ScanRasters
 from linepose.output.map.sources import SOURCES
+from linepose.output.map.words import budget_sentences, scan_sentence
 from linepose.output.map.write_places import places_header, write_places
 from unit.output.map.made_up_scan import scan
 
@@ -56,3 +59,19 @@ def test_budget_adds_up_at_centre_and_edge():
         one_line = np.sqrt(sum(table[place, source] ** 2 for source in SOURCES))
         assert one_line == pytest.approx(table[place, ALL], rel=0.02)  # of medians over lines
     assert table["edge", ALL] > table["centre", ALL]
+
+
+def test_a_map_is_told_with_its_budget_and_what_was_counted():
+    counts = {"n_missed": 7, "n_outside": 0, "n_in_hole": 3, "n_met_twice": 0}
+    rasters = ScanRasters(0.02, 10, 20, 60, 15, (), is_new=False)
+    made = ScanMap("strip", 100, counts, budget_table(scan()), is_new=False, rasters=rasters)
+    told = scan_sentence(made)
+    assert "7 of 100 pixels miss the ground; 3 of 100 pixels end in a hole of it" in told
+    assert (
+        "15 of 75 cells of 0.02 m are filled from beside; 30 pixels are not the nearest of their cell's centre" in told
+    )
+    assert told.endswith("(made before)")
+    centre, edge = budget_sentences(made)
+    whole = made.budget.set_index(["place", "source"])["horizontal_m"].astype(float) * 1000
+    assert centre.startswith(f"  one sigma at the centre: {whole['centre', ALL]:.1f} mm; of that pose ")
+    assert f"navigation {whole['edge', 'navigation']:.1f}, " in edge
