@@ -136,9 +136,11 @@ def results_of(platform):
     names += ["residuals.parquet", "estimated_points.parquet", "figures_files.txt"]
     if platform in ADJUSTED_PLATFORMS:
         names += [f"{name}.parquet" for name in ADJUSTED]
+    if platform in PROJECT.simulated + PROJECT.flown:
+        names += ["simulated_files.txt", "truth.parquet"]
     if platform in PROJECT.simulated:
-        names += ["simulated_files.txt", "truth.parquet", "detection.parquet"]
-        names += ["extraction_accuracy.parquet", "detected_points.parquet"]
+        names += ["detection.parquet", "extraction_accuracy.parquet"]
+        names += ["detected_points.parquet"]
     return experiment_results(platform) + [
         f"results/{platform}/{name}" for name in names
     ]
@@ -169,7 +171,7 @@ def known_points(wildcards):
 
 def readable(wildcards):
     """The check of what the platform recorded; what was simulated here needs none."""
-    if wildcards.platform in PROJECT.simulated:
+    if wildcards.platform in PROJECT.simulated + PROJECT.flown:
         return []
     return f"results/logs/{wildcards.platform}/check_readable.passed"
 

@@ -13,7 +13,7 @@ rule simulate:
     benchmark:
         "results/benchmarks/{platform}/simulate.tsv"
     wildcard_constraints:
-        platform=names_of(PROJECT.simulated),
+        platform=names_of(PROJECT.simulated + PROJECT.flown),
     conda:
         "../../environment.yml"
     threads: 2
@@ -22,6 +22,7 @@ rule simulate:
     params:
         camera=lambda wildcards: settings(wildcards)["camera"],
         simulation=lambda wildcards: settings(wildcards)["simulation"],
+        flight=lambda wildcards: settings(wildcards)["flight"],
         code=script_digest("simulate"),
     script:
         "../../scripts/simulate.py"

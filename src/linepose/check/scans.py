@@ -46,7 +46,7 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
     )
     if not any(finding.level == Level.ERROR for finding in findings):
         findings.append(ok("scans", f"{len(scans)} scans of {n_pixels} pixels, a time stamp for each line"))
-    if source.points == "detection":
+    if source.points != "labels":
         found = (
             "points are found without labels: their numbers, and predicted sigmas, are known after the run's extraction"
         )

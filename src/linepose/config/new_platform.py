@@ -164,7 +164,7 @@ def _source(new: NewPlatform) -> list[str]:
         ]
     lines += [
         "  scans: scans/*.hdr # one a view, sorted by name: ENVI (.hdr), .png, .tif, with NAME-times.csv",
-        "  points: labels # or detection: the dots are found without labels",
+        "  points: labels # or detection: dots found without labels; or matching: tie points where strips overlap",
         "  labels: labels.csv # observation, point, u_px, line: make it with linepose label",
     ]
     if not new.navigation_format:

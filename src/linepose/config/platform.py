@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from pydantic import (
     BeforeValidator,
     Field,
@@ -28,6 +29,7 @@ from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, faults_of, validated
+from linepose.simulation.flight_section import FlightSection
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
 from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.targets.registry import Target
@@ -106,6 +108,9 @@ class Platform(Settings):
     simulation: Simulation | None = Field(
         None, description="A simulated survey with a known truth: keys and units in linepose.simulation.settings."
     )
+    flight: FlightSection | None = Field(
+        None, description="Or a simulated flight over textured ground, with a known truth."
+    )
     noise_model: NoiseModelName = Field(DEFAULT.name, description=f"The model of the noise. {MEANINGS}")
     prior: Literal["none", "hand_measured"] = Field(
         "hand_measured",
@@ -120,9 +125,26 @@ class Platform(Settings):
 
     @model_validator(mode="after")
     def _has_one_origin(self) -> "Platform":
-        if (self.simulation is None) == (self.source.dataset is None):
-            raise ValueError("either source.dataset, or a simulation with a source of kind scans")
+        if sum(one is not None for one in (self.simulation, self.flight, self.source.dataset)) != 1:
+            raise ValueError("either source.dataset, or a simulation or flight with a source of kind scans")
         return self
+
+    @model_validator(mode="after")
+    def _has_ground_to_match(self) -> "Platform":
+        source = self.source
+        if not isinstance(source, ScansSection) or source.points != "matching":
+            return self
+        ground = None if self.points is None else self.points.ground
+        if source.matching.ground_height_m is None and (ground is None or ground.height_m is None):
+            raise ValueError("source.matching.ground_height_m, or points.ground.height_m, with source.points matching")
+        return self
+
+    @property
+    def true_pose(self) -> Floats | None:
+        """The true pose (6,) of a simulated platform; None of any other."""
+        if self.flight is not None:
+            return self.flight.true_pose
+        return None if self.simulation is None else np.array(self.simulation.true_pose)
 
     @model_validator(mode="after")
     def _can_use_points(self) -> "Platform":

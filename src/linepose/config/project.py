@@ -36,8 +36,13 @@ class Project:
 
     @property
     def simulated(self) -> list[str]:
-        """Names of the platforms with a known truth."""
+        """Names of the platforms with a known truth that see a pattern."""
         return [name for name, platform in self.platforms.items() if platform.simulation is not None]
+
+    @property
+    def flown(self) -> list[str]:
+        """Names of the platforms with a known truth that see the ground from the air."""
+        return [name for name, platform in self.platforms.items() if platform.flight is not None]
 
     def files(self, dataset: str) -> list[Path]:
         """Every file of a data set that its platforms read."""

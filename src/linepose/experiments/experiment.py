@@ -110,7 +110,7 @@ class Experiment:
 
     def is_wanted(self, platform: Platform) -> bool:
         """Whether this experiment is run for a platform."""
-        if self.truth and platform.simulation is None:
+        if self.truth and platform.true_pose is None:
             return False
         if self.removal and not noise_model(platform.noise_model).removes_outliers:
             return False

@@ -12,6 +12,7 @@ from pydantic import Field, PositiveFloat, PositiveInt, field_validator, model_v
 from linepose.inputs.navigation.registry import Navigation
 from linepose.inputs.patterns import Dataset, Files, matching
 from linepose.inputs.scans.envi_header import data_files
+from linepose.inputs.tie_points.settings import MatchingSection
 from linepose.settings import Settings
 
 
@@ -72,8 +73,13 @@ class ScansSection(Settings):
         "gps for resonon and unix for the others.",
     )
     left_out: tuple[PositiveInt, ...] = Field((), description="Numbers of observations that are not used.")
-    points: Literal["labels", "detection"] = Field(
-        "labels", description="Pattern points from approximate labels, or found without any."
+    points: Literal["labels", "detection", "matching"] = Field(
+        "labels",
+        description="Points from approximate labels, those of the pattern found without any, or tie points matched "
+        "between strips that overlap.",
+    )
+    matching: MatchingSection = Field(
+        MatchingSection(), description="How tie points are matched, for `points: matching`."
     )
     labels: Files = Field(
         "labels.csv",

@@ -177,13 +177,13 @@ class Calibration:
     @property
     def true_pose(self) -> Floats | None:
         """The true pose (6,) of a simulated platform."""
-        simulation = None if self.platform is None else self.platform.simulation
-        return None if simulation is None else np.array(simulation.true_pose)
+        return None if self.platform is None else self.platform.true_pose
 
     @property
     def true_points_m(self) -> Floats | None:
         """The pattern's true points (M, 3) in map coordinates, of a simulated platform."""
-        if not self.results.has("truth"):
+        from_the_air = self.platform is not None and self.platform.flight is not None
+        if from_the_air or not self.results.has("truth"):
             return None
         truth = self.results.table("truth", pa.schema(floats("point", *_TRUE_POINT_COLUMNS)))
         return np.array(truth.groupby("point")[_TRUE_POINT_COLUMNS].first())

@@ -26,6 +26,10 @@ def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
     Columns as in `POINTS` (labelled views) or `SCAN_POINTS` (scans). Raises InputError.
     """
     source, n_pixels = platform.source, platform.camera.n_pixels
+    if isinstance(source, ScansSection) and source.points == "matching":
+        from linepose.pipeline.tie_points import matched_points
+
+        return matched_points(platform, folder)
     if isinstance(source, LabelledViewsSection):
         return read_labelled_views(select_views(folder, source.views, source.first, source.step), n_pixels)
     scans, refine = select_scans(folder, source.scans, source.left_out), REFINEMENTS[source.refinement]

@@ -74,10 +74,15 @@ def navigation_log(settings: SimulationSettings) -> pd.DataFrame:
 def write_covariances(path: Path, settings: SimulationSettings) -> None:
     """Writes the reported covariance at 1 Hz."""
     time_s = np.arange(0.0, schedule(settings).survey_end_s, 1 / _COVARIANCE_RATE_HZ)
+    path.write_text(covariance_rows(time_us(settings, time_s), reported_covariance(settings.reported_sigma)))
+
+
+def covariance_rows(stamps_us: NDArray[np.int64], reported: Floats) -> str:
+    """Rows of time stamps (K,) with the reported covariance (6, 6) of position and angles within a 12x12 one."""
     matrix = np.zeros((_COVARIANCE_SIZE, _COVARIANCE_SIZE))
-    matrix[:6, :6] = reported_covariance(settings.reported_sigma)
+    matrix[:6, :6] = reported
     row = ",".join(f"{value:.8g}" for value in matrix.ravel())
-    path.write_text("".join(f"{stamp},{row}\n" for stamp in time_us(settings, time_s)))
+    return "".join(f"{stamp},{row}\n" for stamp in stamps_us)
 
 
 def labels(camera: Camera, settings: SimulationSettings) -> pd.DataFrame:

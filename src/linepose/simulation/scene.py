@@ -75,13 +75,13 @@ def _row(y: float) -> int:
 @numba.njit(cache=True)
 def ground_reflectance(x: float, y: float, mean: float, contrast: float, grain_m: float, seed: int) -> float:
     """Reflectance of the ground at x, y (m): two octaves of smooth noise, `mean (1 +- contrast)`."""
-    coarse = _smooth_noise(x / (4 * grain_m), y / (4 * grain_m), seed)
-    fine = _smooth_noise(x / grain_m, y / grain_m, seed + 1)
+    coarse = smooth_noise(x / (4 * grain_m), y / (4 * grain_m), seed)
+    fine = smooth_noise(x / grain_m, y / grain_m, seed + 1)
     return mean * (1.0 + contrast * (coarse + fine - 1.0))
 
 
 @numba.njit(cache=True)
-def _smooth_noise(x: float, y: float, seed: int) -> float:
+def smooth_noise(x: float, y: float, seed: int) -> float:
     """Random values (0 to 1) on the whole numbers, blended in between."""
     i, j = int(np.floor(x)), int(np.floor(y))
     a, b = x - i, y - j
