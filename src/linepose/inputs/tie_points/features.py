@@ -65,16 +65,16 @@ def features_of(strip: Rectified, n_features: int) -> Features:
     if not upright:
         none = np.zeros(0)
         return Features(np.zeros((0, 2)), none, none, none, none, np.zeros((0, 128), dtype=np.float32))
-    upright, descriptor = sift.compute(picture, upright)
-    at = np.array([one.pt for one in upright])
+    described, descriptor = sift.compute(picture, upright)
+    at = np.array([one.pt for one in described])
     u_px, line = _between(strip.u_px, at), _between(strip.line, at)
     root = np.sqrt(descriptor / np.maximum(descriptor.sum(axis=1, keepdims=True), 1e-9))
     features = Features(
         strip.first_m + strip.cell_m * at,
         u_px,
         line,
-        strip.cell_m * np.array([one.size for one in upright]),
-        np.array([one.response for one in upright]),
+        strip.cell_m * np.array([one.size for one in described]),
+        np.array([one.response for one in described]),
         root.astype(np.float32),
     )
     return features.select(np.flatnonzero(np.isfinite(u_px) & np.isfinite(line)))
