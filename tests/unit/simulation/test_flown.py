@@ -6,6 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from linepose.config.platform import load_platform
+from linepose.experiments.registry import check_experiments
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera, rays
 from linepose.inputs.scans.scan_files import read_scan
@@ -87,3 +89,11 @@ def test_scans_are_read_like_any_others_and_the_same_bytes_again(tmp_path):
     assert np.ptp(np.diff(scan.time_us)) > 0
     log = pd.read_parquet(tmp_path / "once" / "navigation.parquet")
     assert log["time_us"].iloc[0] < scan.time_us[0] < scan.time_us[-1] < log["time_us"].iloc[-1]
+
+
+def test_the_simulated_drone_overlaps_and_asks_for_experiments_that_there_are(platforms_folder):
+    platform = load_platform(platforms_folder, "drone-sim")
+    check_experiments(platform, "drone-sim.yaml")
+    assert 8 <= len(platform.flight.strips) <= 12
+    assert np.linalg.norm(platform.true_pose[:3] - platform.start_pose()[:3]) < 2 * 0.03 * np.sqrt(3)
+    assert platform.start_pose()[3:] == pytest.approx(platform.true_pose[3:], abs=2 * np.deg2rad(1.0))
