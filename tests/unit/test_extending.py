@@ -72,7 +72,6 @@ class Copy:
                 shutil.copytree(source, folder / name, ignore=ignored)
             else:
                 shutil.copy(source, folder / name)
-        self.install()
 
     def install(self) -> None:
         """Let the copy's entry points be found."""
@@ -130,59 +129,67 @@ class Copy:
         (self.folder / "config" / "config.yaml").write_text(yaml.safe_dump({"platforms": ["mine"]}))
 
 
-@pytest.fixture
-def copy(tmp_path) -> Copy:
-    return Copy(tmp_path)
-
-
-def extended(copy: Copy, kind: str) -> Copy:
-    """The copy with one more of a kind; no file was touched but those that the page's table names."""
-    named = {one: {new, entry} for one, new, entry in TABLE_ROW.findall(PAGE)}
-    touched = copy.extend(kind)
-    assert touched == named[kind]
-    modules = [path for path in touched if path.endswith(".py")]
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory) -> Copy:
+    """The copy with one more of each kind; no file was touched but those that the page's table names for the kind."""
+    copy = Copy(tmp_path_factory.mktemp("copy"))
+    rows, modules = TABLE_ROW.findall(PAGE), []
+    assert len(rows) == 5
+    for kind, new, entry in rows:
+        touched = copy.extend(kind)
+        assert touched == {new, entry}
+        modules += [path for path in touched if path.endswith(".py")]
     copy.python("-m", "ruff", "check", *modules)
     copy.python("-m", "ruff", "format", "--check", "--diff", *modules)
+    copy.install()
     return copy
 
 
-def test_noise_model(copy):
-    extended(copy, "noise model").platform(noise_model="doubled")
-    assert "doubled: the paper's, with the reported sigmas doubled" in copy.reference()
+@pytest.fixture(scope="module")
+def reference(copy) -> str:
+    return copy.reference()
+
+
+@pytest.fixture(scope="module")
+def planned(copy) -> str:
+    """What the workflow plans for a platform with the new noise model and the new experiment."""
+    copy.platform(noise_model="doubled", experiments={"headings": {"n_sectors": 8}})
+    wanted = ["results/mine/optima.parquet", "results/mine/headings.parquet"]
+    return copy.python("-m", "snakemake", "--dry-run", "--cores", "1", *wanted)
+
+
+def test_noise_model(copy, reference, planned):
+    copy.platform(noise_model="doubled")
+    assert "doubled: the paper's, with the reported sigmas doubled" in reference
     assert float(copy.python("-c", IN_USE)) == pytest.approx(4)
-    planned = copy.python("-m", "snakemake", "--dry-run", "--cores", "1", "results/mine/optima.parquet")
     assert "results/compiled/doubled.txt" in planned
 
 
-def test_navigation_format(copy):
-    extended(copy, "navigation format").install()
+def test_navigation_format(copy, reference):
     navigation = {"format": "tum", "file": "trajectory.txt"}
     source = {"kind": "scans", "dataset": "mine", "navigation": navigation, "covariances": "covariances.csv"}
     copy.platform(source=source, simulation=None)
     (copy.folder / "trajectory.txt").write_text("1700000000.25 1 2 3 0 0 0 1\n1700000000.50 2 2 3 0 0 0 1\n")
-    assert "`tum`: time, position and quaternion of each pose." in copy.reference()
+    assert "`tum`: time, position and quaternion of each pose." in reference
     north, east, down, yaw = np.array(copy.python("-c", READ).split(), dtype=float)
     np.testing.assert_allclose([north, east, down, yaw], [2, 1, -3, np.pi / 2], atol=1e-12)
     copy.linepose("new", "other", *GIVEN, "--source", "scans", "--navigation-format", "tum")
     assert "format: tum" in (copy.folder / "config" / "platforms" / "other.yaml").read_text()
 
 
-def test_experiment(copy):
-    extended(copy, "experiment").platform(experiments={"headings": {"n_sectors": 8}})
-    assert "experiments.headings.n_sectors" in copy.reference()
-    planned = copy.python("-m", "snakemake", "--dry-run", "--cores", "1", "results/mine/headings.parquet")
+def test_experiment(reference, planned):
+    assert "experiments.headings.n_sectors" in reference
     assert "rule headings:" in planned
 
 
 def test_figure(copy):
-    extended(copy, "figure").platform()
+    copy.platform()
     made_up.write_results(copy.folder / "results" / "mine")
     told = copy.python("-c", DRAW)
     assert told.splitlines() == ["mine: histogram of the headings of the accepted observations.", "True True"]
 
 
 def test_export(copy):
-    extended(copy, "export").install()
     copy.platform()
     made_up.write_results(copy.folder / "results" / "mine")
     assert "4 x 4 matrix from camera to body, plain text" in copy.linepose("export", "mine", "--list")

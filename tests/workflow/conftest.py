@@ -1,19 +1,24 @@
 """The tiny project after a run, once a session."""
 
 import shutil
+from pathlib import Path
 
 import pytest
+from made_once import made_once
 from tiny_project import STUDY, TINY, Project
+
+
+def _run(folder: Path) -> None:
+    project = Project(folder)
+    project.configure(STUDY, {"tiny": TINY})
+    run = project.run()
+    assert run.returncode == 0, run.stderr
 
 
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory) -> Project:
     """The tiny platform's project after a run on two cores; tests must not change its results."""
-    project = Project(tmp_path_factory.mktemp("finished"))
-    project.configure(STUDY, {"tiny": TINY})
-    run = project.run()
-    assert run.returncode == 0, run.stderr
-    return project
+    return Project(made_once(tmp_path_factory, "finished", _run))
 
 
 @pytest.fixture

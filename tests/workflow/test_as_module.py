@@ -33,6 +33,8 @@ def test_other_workflow_plans_and_runs_all_rules(other, snakefile):
     for result in ("tiny/pose.parquet", "tiny/basin_summary.parquet", "report.html", "tiny/figures"):
         assert f"results/{result}" in told
     assert "regression" not in told  # the paper is of the clone
+    if snakefile == "Snakefile":
+        return  # whose rules are those of the other
     run = other.run("results/compiled/published.txt", snakefile=other.folder / "Snakefile")
     assert run.returncode == 0, run.stderr
     assert (other.folder / "results" / "compiled" / "published.txt").is_file()

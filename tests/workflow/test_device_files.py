@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pandas as pd
 import pytest
-from tiny_project import ROOT, STUDY, TINY, Project
+from tiny_project import ROOT, STUDY, TINY
 
 from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES, EULER_COLUMNS, POSITION_COLUMNS
 
@@ -61,12 +61,9 @@ def write_cvat(labels, path):
 
 
 @pytest.fixture
-def recorded(tmp_path):
+def recorded(copied):
     """A project with the tiny survey, recorded by three kinds of devices, and their navigation as a drive."""
-    project = Project(tmp_path)
-    project.configure(STUDY, {"tiny": TINY})
-    run = project.run("results/tiny/simulated")
-    assert run.returncode == 0, run.stderr
+    project = copied
     simulated = project.folder / "results" / "tiny" / "simulated"
     labels = pd.read_csv(simulated / "labels.csv")
     sigma = np.sqrt(np.loadtxt(simulated / "covariances.csv", delimiter=",")[0, 1:].reshape(12, 12).diagonal()[:6])

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Final, TypeVar
 
@@ -187,6 +188,7 @@ def _recorder(project: Project, platform: str, root: Path, observations: pd.Data
     """What the convention doctor looks at: the observations, read again where it moves the camera's clock."""
     settings, folder = project.platforms[platform], root / project.folder(platform)
 
+    @cache  # tens of hypotheses look at the same few clocks
     def recording_at(shift_s: float) -> Recording:
         table = observations
         if shift_s:

@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pandas as pd
@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike
 from pydantic import Field, PositiveInt
 
 from linepose.adjustment.levels import LEVEL_NAMES
-from linepose.adjustment.reprojection import reprojection
-from linepose.adjustment.result import Adjustment
-from linepose.estimation.adjustment_estimator import AdjustmentEstimator, adjustment_estimator
 from linepose.estimation.noise_models import ADJUSTMENT as ADJUSTMENT_MODEL
 from linepose.experiments.estimate import estimate_fields, estimate_row
 from linepose.experiments.experiment import Experiment, Section
@@ -21,10 +18,13 @@ from linepose.experiments.inputs import Inputs, log_rows
 from linepose.experiments.splits import SPLITS, random_splits, sigma_factor
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
 from linepose.pipeline.adjusted_schemas import ADJUSTED
-from linepose.pipeline.adjusted_tables import error_tables
 from linepose.pipeline.batches import batch_ranges
 from linepose.settings import Settings
 from linepose.tables import floats, optional_floats, texts
+
+if TYPE_CHECKING:  # configuration has these settings and must be read quickly: what computes is imported late
+    from linepose.adjustment.result import Adjustment
+    from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 
 _logger = logging.getLogger(__name__)
 ALL: Final = "all"
@@ -66,7 +66,7 @@ SECTION: Final = Section(
 
 
 def adjustment_table(
-    sets: Mapping[str, AdjustmentEstimator], adjusted: Mapping[str, Adjustment], true_pose: ArrayLike | None = None
+    sets: "Mapping[str, AdjustmentEstimator]", adjusted: "Mapping[str, Adjustment]", true_pose: ArrayLike | None = None
 ) -> pd.DataFrame:
     """One row a set of observations: pose, sigmas, levels, and the error where the true pose (6,) is known.
 
@@ -103,7 +103,7 @@ def _errors(pose: ArrayLike, covariance: ArrayLike, truth: ArrayLike | None) -> 
 
 
 def adjusted_splits(
-    sets: Mapping[str, AdjustmentEstimator], name: str, start: ArrayLike, indices: Sequence[int], seed: int
+    sets: "Mapping[str, AdjustmentEstimator]", name: str, start: ArrayLike, indices: Sequence[int], seed: int
 ) -> pd.DataFrame:
     """Random halves of one set; columns as in `ADJUSTED_SPLITS`."""
     estimator = sets[name]
@@ -112,6 +112,10 @@ def adjusted_splits(
 
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    from linepose.adjustment.reprojection import reprojection
+    from linepose.estimation.adjustment_estimator import adjustment_estimator
+    from linepose.pipeline.adjusted_tables import error_tables
+
     settings, conditions, seed = inputs.required(SECTION), inputs.conditions, inputs.seed
     surveys = {ALL: inputs.data.all.survey, INLIERS: inputs.data.accepted.survey}
     surveys |= {name: other.all.survey for name, other in inputs.other_data.items()}

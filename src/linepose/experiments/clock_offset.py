@@ -6,7 +6,7 @@ direction or speed tell them apart. So the estimate comes with its correlations,
 
 import logging
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pandas as pd
@@ -14,13 +14,10 @@ import pyarrow as pa
 from numpy.typing import ArrayLike
 from pydantic import Field, PositiveFloat
 
-from linepose.adjustment.assemble import CLOCK_OFFSET_COLUMN
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
-from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.estimator import Estimator
 from linepose.estimation.identifiability import TURN_NAMES, in_body_axes
-from linepose.estimation.likelihood_estimator import LikelihoodEstimator
 from linepose.estimation.noise_models import likelihood_of
 from linepose.estimation.optimise import Search, laplace_covariance, optimise
 from linepose.estimation.sampling import SamplingSettings, sample, stage_seed
@@ -32,12 +29,14 @@ from linepose.experiments.jackknife import jackknife_sigma
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood
-from linepose.likelihood.clock_offset import OFFSET_NAME, ClockOffsetLikelihood, with_clock_offset
-from linepose.pipeline.load import read_log
 from linepose.pipeline.stages import OPTIMA, SAMPLES, sample_table
 from linepose.settings import Settings
 from linepose.survey.observations import Survey
 from linepose.tables import flags, floats, optional_floats, texts, whole_numbers, with_parameters
+
+if TYPE_CHECKING:  # configuration has these settings and must be read quickly: what computes is imported late
+    from linepose.estimation.adjustment_estimator import AdjustmentEstimator
+    from linepose.likelihood.clock_offset import ClockOffsetLikelihood
 
 _logger = logging.getLogger(__name__)
 
@@ -82,7 +81,7 @@ class PoseWithoutOffset:
 
 
 def estimate_clock_offset(
-    likelihood: ClockOffsetLikelihood,
+    likelihood: "ClockOffsetLikelihood",
     without: PoseWithoutOffset,
     start: ArrayLike,
     seed: int,
@@ -134,12 +133,14 @@ class _Found:
 
 
 def adjusted_clock_offset(
-    estimator: AdjustmentEstimator, without: PoseWithoutOffset, maximum_s: float, seed: int
+    estimator: "AdjustmentEstimator", without: PoseWithoutOffset, maximum_s: float, seed: int
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The same as one parameter more of the adjustment, whose prior has `maximum_s` at two sigmas from zero.
 
     The bodies move along the rates of their own views, so that no raw log is needed.
     """
+    from linepose.adjustment.assemble import CLOCK_OFFSET_COLUMN
+
     settings = estimator.settings.replaced(clock_offset_sigma_s=maximum_s / 2)
     adjusted = replace(estimator, settings=settings).adjusted(seed=seed)
     drawn = adjusted.samples[[*POSE_COLUMNS, CLOCK_OFFSET_COLUMN]].to_numpy()
@@ -160,6 +161,8 @@ def adjusted_clock_offset(
 def _table(
     found: _Found, curved: dict[str, float], numbers: ArrayLike, maximum_s: float, without: PoseWithoutOffset
 ) -> pd.DataFrame:
+    from linepose.likelihood.clock_offset import OFFSET_NAME
+
     pose, offset_s = found.parameters[:N_PARAMETERS], float(found.parameters[-1])
     names = (*POSE_COLUMNS, OFFSET_NAME)
     correlation = correlations(found.parameters, found.covariance, names)
@@ -217,6 +220,8 @@ def _pose(suffix: str, pose: Floats, sigma: Floats, neg_log_likelihood: float) -
 
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
+    from linepose.estimation.adjustment_estimator import AdjustmentEstimator
+
     accepted, reference = inputs.data.accepted, inputs.reference
     optimum = inputs.table("optima", OPTIMA).set_index("stage").loc["inliers"]
     without = PoseWithoutOffset(reference.pose, reference.covariance, float(optimum["neg_log_likelihood"]))
@@ -232,6 +237,10 @@ def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
 def _of_likelihood(
     inputs: Inputs, accepted: Estimator, without: PoseWithoutOffset, maximum_s: float
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
+    from linepose.estimation.likelihood_estimator import LikelihoodEstimator
+    from linepose.likelihood.clock_offset import with_clock_offset
+    from linepose.pipeline.load import read_log
+
     assert isinstance(accepted, LikelihoodEstimator)
     platform, survey = inputs.platform, accepted.survey
 

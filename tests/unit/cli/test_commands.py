@@ -226,13 +226,26 @@ def mine(here, platforms_folder):
     return here
 
 
-def test_check_of_good_files_ends_well_in_plain_lines(mine):
+def test_check_of_good_files_ends_well_in_plain_lines_that_hold_every_finding(mine, monkeypatch):
+    from rich.console import Console
+
+    from linepose.check import platform
+    from linepose.cli.findings import findings_table, sigmas_table
+
+    reports, check_platform = [], platform.check_platform
+    monkeypatch.setattr(platform, "check_platform", lambda *given: reports.append(check_platform(*given)) or reports[0])
     result = given("check", "mine")
     assert result.exit_code == 0, result.output
     assert "no errors" in result.stdout.splitlines()[-1]
     assert "predicted sigmas" in result.stdout
     assert "\x1b" not in result.stdout
     assert "│" not in result.stdout
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(findings_table(reports[0]))
+    console.print(sigmas_table(reports[0]))
+    text = console.export_text()
+    assert all(finding.subject in text for finding in reports[0].findings)
+    assert "the roll of the camera" in text
 
 
 def test_check_of_bad_files_ends_with_one_and_tells_all(mine):
@@ -244,21 +257,6 @@ def test_check_of_bad_files_ends_with_one_and_tells_all(mine):
     errors = [line for line in result.stdout.splitlines() if line.startswith("error")]
     assert len(errors) == 2
     assert "2 errors, no warnings" in result.stdout.splitlines()[-1]
-
-
-def test_check_tables_hold_every_finding(mine):
-    from rich.console import Console
-
-    from linepose.check.platform import check_platform
-    from linepose.cli.findings import findings_table, sigmas_table
-
-    report = check_platform("mine", mine)
-    console = Console(width=200, record=True, file=io.StringIO())
-    console.print(findings_table(report))
-    console.print(sigmas_table(report))
-    text = console.export_text()
-    assert all(finding.subject in text for finding in report.findings)
-    assert "the roll of the camera" in text
 
 
 @pytest.mark.parametrize("command", ["check", "run", "show", "export", "label"])

@@ -4,6 +4,8 @@ import os
 import shutil
 import subprocess
 import sys
+from functools import cache
+from io import BytesIO
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -27,6 +29,14 @@ from linepose.survey.targets.rings import RingsSection
 from unit.inputs.targets.conftest import draw
 
 
+@cache
+def scan_picture(number):
+    """A scan as PNG, and where its points (15, 2) are."""
+    picture, png = draw([[420.0, 30.0], [20.0, 500.0]], (150.0, 190.0 + 10 * number), seed=number), BytesIO()
+    Image.fromarray(np.clip(picture.intensity / 16, 0, 255).astype(np.uint8)).save(png, "png")
+    return png.getvalue(), picture.truth
+
+
 class Mouse:
     """A window over two scans, and what a person does to it."""
 
@@ -35,13 +45,12 @@ class Mouse:
         self.path, self.truth = folder / "labels.csv", {}
         self.scans = {1: folder / "run-01.png", 2: folder / "run-02.png"}
         for number, path in self.scans.items():
-            picture = draw([[420.0, 30.0], [20.0, 500.0]], (150.0, 190.0 + 10 * number), seed=number)
-            Image.fromarray(np.clip(picture.intensity / 16, 0, 255).astype(np.uint8)).save(path)
-            self.truth[number] = picture.truth
+            png, self.truth[number] = scan_picture(number)
+            path.write_bytes(png)
         self.open()
 
     def open(self):
-        self.figure = Figure(figsize=(13, 8.5))
+        self.figure = Figure(figsize=(13, 8.5), dpi=50)  # as large on screen as a real one, with fewer pixels to paint
         FigureCanvasAgg(self.figure)
         session = session_of(self.scans, self.path, self.target)
         self.window = LabelWindow(

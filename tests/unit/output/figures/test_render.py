@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,6 @@ from matplotlib.text import Text
 from PIL import Image
 
 from linepose.errors import LineposeError
-from linepose.output.figures.entry import FIGURES as SCHEMA
 from linepose.output.figures.registry import FIGURES
 from linepose.output.figures.render import render_figures
 from linepose.output.figures.style import HALF_PAGE_IN, LEAST_PT, PNG_DPI, blank_figure, save
@@ -23,18 +23,9 @@ from linepose.output.report.platform_sections import platform_sections
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.summary import summarise
 from linepose.pipeline.table_checks import usable_chain
-from linepose.tables import write_table
 from unit import made_up
 
 NOT_MADE = {entry.name for entry in FIGURES if entry.left_out(made_up.platform())}  # for want of scans or experiments
-
-
-@pytest.fixture(scope="module")
-def drawn(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("made_up")
-    made_up.write_results(folder)
-    index = render_figures(Calibration.from_results(folder, made_up.platform()), folder / "figures")
-    return folder, index
 
 
 def test_every_figure_is_drawn_or_has_a_sentence_in_its_place(drawn):
@@ -46,7 +37,6 @@ def test_every_figure_is_drawn_or_has_a_sentence_in_its_place(drawn):
     shown = set(index["figure"]) - NOT_MADE
     assert files == {f"{name}.{kind}" for name in shown for kind in ("png", "pdf")}
     assert all(index.loc[index["left_out"] == "", "caption"].str.endswith("."))
-    write_table(index, folder / "index.parquet", SCHEMA)
 
 
 def test_nothing_is_cut_off_at_an_edge(drawn):
@@ -99,17 +89,30 @@ def reads(reader, folder):
     return set(results.results._read)
 
 
+@pytest.fixture(scope="module")
+def figure_of(drawn):
+    """The figure of an entry, drawn once, and what it reads."""
+
+    @cache
+    def draw(entry):
+        results = Calibration.from_results(drawn[0], made_up.platform())
+        return entry.draw(results), set(results.results._read)
+
+    return draw
+
+
 @pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in NOT_MADE], ids=lambda e: e.name)
-def test_an_entry_names_the_results_that_its_figure_is_drawn_from(drawn, entry):
-    assert reads(entry.draw, drawn[0]) | reads(entry.caption, drawn[0]) <= set(entry.needs)
+def test_an_entry_names_the_results_that_its_figure_is_drawn_from(drawn, figure_of, entry):
+    assert figure_of(entry)[1] | reads(entry.caption, drawn[0]) <= set(entry.needs)
 
 
 @pytest.fixture(scope="module")
-def readers(drawn):
+def readers(drawn, figure_of):
     """Everything that is made from results, with the tables that each reads."""
     entries = [entry for entry in FIGURES if entry.name not in NOT_MADE]
-    makers = [*(entry.caption for entry in entries), *(entry.draw for entry in entries), summarise, platform_sections]
-    return [(maker, reads(maker, drawn[0])) for maker in makers]
+    makers = [*(entry.caption for entry in entries), summarise, platform_sections]
+    of_figures = [(entry.draw, figure_of(entry)[1]) for entry in entries]
+    return [(maker, reads(maker, drawn[0])) for maker in makers] + of_figures
 
 
 @pytest.mark.parametrize("name", made_up.TABLES)
@@ -149,9 +152,8 @@ def test_a_chain_that_stands_still_is_told_rather_than_drawn():
 
 
 @pytest.mark.parametrize("entry", [entry for entry in FIGURES if entry.name not in NOT_MADE], ids=lambda e: e.name)
-def test_text_can_be_read_where_the_figure_is_printed_at_half_a_page(drawn, entry):
-    folder, _ = drawn
-    figure = entry.draw(Calibration.from_results(folder, made_up.platform()))
+def test_text_can_be_read_where_the_figure_is_printed_at_half_a_page(figure_of, entry):
+    figure, _ = figure_of(entry)
     figure.draw_without_rendering()
     shrunk = min(1.0, HALF_PAGE_IN / figure.get_figwidth())
     texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]

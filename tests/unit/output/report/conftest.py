@@ -1,7 +1,9 @@
+import shutil
+from pathlib import Path
+
 import pytest
 
 from linepose.output.figures.entry import FIGURES
-from linepose.output.figures.render import render_figures
 from linepose.output.report.assemble import platform_on_page
 from linepose.output.report.page import render_platform_page
 from linepose.output.report.provenance import settings_text, versions
@@ -18,10 +20,13 @@ def results(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def page(results):
+def page(results, drawn):
     """The whole report of one made-up platform."""
-    folder = results.results.path("figures/index").parent
-    write_table(render_figures(results, folder), folder / "index.parquet", FIGURES)
+    figures, index = drawn
+    folder = Path(
+        shutil.copytree(figures / "figures", results.results.path("figures/index").parent, dirs_exist_ok=True)
+    )
+    write_table(index, folder / "index.parquet", FIGURES)
     one = platform_on_page(results, results.platform.model_dump(mode="json"))
     study = settings_text({"data_folders": ["data", "/home/someone/private/data"], "seed": 1})
     return render_platform_page(one, study, versions())
