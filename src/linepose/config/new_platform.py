@@ -182,7 +182,8 @@ def _source(new: NewPlatform) -> list[str]:
             *_format_keys(FORMATS.member(new.navigation_format).section, new.navigation_keys),
         ]
     if not _has_covariances(new):
-        lines.append("  covariances: covariances.csv # rows of time (us) and the row-major 12x12 covariance")
+        of_log = "; not needed where the log holds sigmas" if new.navigation_format else ""
+        lines.append(f"  covariances: covariances.csv # rows of time (us) and the row-major 12x12 covariance{of_log}")
     return lines
 
 

@@ -17,7 +17,7 @@ from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.known_points import known_of_platform
 from linepose.pipeline.load import read_observations
 from linepose.pipeline.project_folder import find_project, load_platform_project
-from linepose.survey.covariance_rule import NEGATIVE, asymmetric, correlations, least_eigenvalue
+from linepose.survey.covariance_rule import COVARIANCE_REMEDY, COVARIANCE_WORDS, first_unusable
 from linepose.survey.observations import (
     COVARIANCE_COLUMNS,
     COVARIANCE_INDICES,
@@ -154,22 +154,11 @@ def _names(values: ArrayLike, count: int) -> np.ndarray:
 
 
 def _check_covariances(matrices: Floats) -> None:
-    for row in np.flatnonzero(~np.any(matrices != 0, axis=(1, 2)))[:1]:
-        raise InputError(
-            f"covariance, row {row}",
-            "zero",
-            "a covariance of north, east, down (m), roll, pitch, yaw (rad)",
-            "give what the navigation system reports, or its data sheet",
-        )
-    correlation = correlations(matrices)
-    skewed, negative = asymmetric(correlation), least_eigenvalue(correlation) < -NEGATIVE
-    for row in np.flatnonzero(skewed | negative)[:1]:
-        raise InputError(
-            f"covariance, row {row}",
-            "a matrix that is not symmetric" if skewed[row] else "a negative eigenvalue",
-            "a covariance of north, east, down (m), roll, pitch, yaw (rad)",
-            "check the order of rows and columns",
-        )
+    unusable = first_unusable(matrices)
+    if unusable is not None:
+        row, found = unusable
+        remedy = "check the order of rows and columns" if np.any(matrices[row]) else COVARIANCE_REMEDY
+        raise InputError(f"covariance, row {row}", found, COVARIANCE_WORDS, remedy)
 
 
 def load_platform_file(platform: str, project: Path | str = ".") -> Platform:

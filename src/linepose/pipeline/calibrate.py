@@ -47,8 +47,15 @@ from linepose.pipeline.stages import (
     samples_from_table,
 )
 from linepose.settings import Settings
+from linepose.survey.covariance_rule import COVARIANCE_REMEDY, COVARIANCE_WORDS, first_unusable
 from linepose.survey.hand_measured import HandMeasured
-from linepose.survey.observations import OBSERVATIONS, Survey, check_determined, survey_from_table
+from linepose.survey.observations import (
+    OBSERVATIONS,
+    Survey,
+    check_determined,
+    covariance_matrices,
+    survey_from_table,
+)
 from linepose.survey.point_knowledge import PointKnowledge
 from linepose.survey.rows import check_time_units, checked_rows
 
@@ -158,6 +165,7 @@ def calibrate(
     _check_kinds(observations=observations, camera=camera, hand_measured=hand_measured, settings=settings)
     observations = _checked(observations, camera.n_pixels)
     survey = survey_from_table(observations)
+    _check_covariances(observations)
     check_determined(survey, 0 if settings.prior == "hand_measured" else N_PARAMETERS)
     if noise_model(settings.noise_model).removes_outliers:
         made = _removed_and_sampled(survey, camera, hand_measured, settings)
@@ -219,6 +227,13 @@ def _check_kinds(**given: object) -> None:
         kind, makes = _KINDS.get(name, (CalibrationSettings, "linepose.CalibrationSettings"))
         if not isinstance(value, kind):
             raise InputError(name, f"a {type(value).__name__}", f"a {kind.__name__}", f"make it with {makes}")
+
+
+def _check_covariances(observations: pd.DataFrame) -> None:
+    """Raise InputError naming the first row of the observations whose covariance is none."""
+    unusable = first_unusable(covariance_matrices(observations))
+    if unusable is not None:
+        raise InputError(f"observations, row {unusable[0]}", unusable[1], COVARIANCE_WORDS, COVARIANCE_REMEDY)
 
 
 def _checked(observations: pd.DataFrame, n_pixels: int) -> pd.DataFrame:

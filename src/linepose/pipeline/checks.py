@@ -19,6 +19,7 @@ SIGMA_FACTOR: Final = 1.25  # by which splits may ask for larger sigmas
 TILT_SPREAD_DEG: Final = 2.0  # the paper's subsets of high and low diversity (Table 4) have 2.7 and 1.4
 NEAR_THRESHOLD: Final = 0.9  # share of the outlier threshold from which the worst observation is worth a look
 HAND_SIGMAS: Final = 3.0  # from the hand measurement, in sigmas of the difference
+CONTRADICTION_SIGMAS: Final = 6.0  # from which on a hand measurement that counts is wrong, and the pose with it
 TRUTH_SIGMAS: Final = 3.0
 
 
@@ -60,7 +61,8 @@ class Evidence:
 
     `sigma_factor`, `influence` (sigmas that the pose moves without the most influential observation) and
     `truth_sigmas` (largest error of a parameter, in its sigmas) are None where nothing is known of them. `adjusted` is
-    None for a noise model that removes observations.
+    None for a noise model that removes observations. `hand_counts`: whether the hand measurement is a prior that
+    `hand_sigmas` is counted from without; `exact_axes`: of the body pose, reported with next to no sigma.
     """
 
     n_observations: int
@@ -85,6 +87,8 @@ class Evidence:
     adjusted: "AdjustedEvidence | None" = None
     truth_sigmas: float | None = None
     truth_parameter: str = ""
+    hand_counts: bool = False
+    exact_axes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -240,12 +244,23 @@ def hand_measurement(evidence: Evidence) -> Check:
     )
     if evidence.hand_sigmas <= HAND_SIGMAS:
         return Check("Hand measurement", Level.GOOD, found)
+    brief = f"{evidence.hand_parameter} is {evidence.hand_sigmas:.1f} sigmas from the hand measurement"
+    if evidence.hand_counts and evidence.hand_sigmas > CONTRADICTION_SIGMAS:
+        return Check(
+            "Hand measurement",
+            Level.BAD,
+            f"{found} Data and hand measurement contradict each other, and the latter, which counts as a prior, pulls "
+            "the pose off what the data say.",
+            "Measure again, or check the conventions of axes and angles, and correct hand_measured; if the tape cannot "
+            "be right, set prior: none, so that the data decide alone.",
+            brief,
+        )
     return Check(
         "Hand measurement",
         Level.CARE,
         found,
         "Measure again; if the tape is right, check the conventions of axes and angles.",
-        f"{evidence.hand_parameter} is {evidence.hand_sigmas:.1f} sigmas from the hand measurement",
+        brief,
     )
 
 

@@ -1,5 +1,6 @@
 """What the verdict rests on, gathered from a calibration and from the experiments that were run on it."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -12,12 +13,13 @@ from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.pipeline.adjusted_schemas import LEVELS, VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence
+from linepose.pipeline.navigation_checks import EXACT
 from linepose.pipeline.pose_tables import PoseNumber, rotation_vector_numbers
 from linepose.pipeline.residual_tables import intraclass_correlation
 from linepose.pipeline.results import Results
 from linepose.pipeline.table_checks import accepted_rows, stage_rows
 from linepose.survey.body_angles import body_angles_rad
-from linepose.survey.observations import Survey
+from linepose.survey.observations import AXES, VARIANCE_COLUMNS, Survey
 from linepose.tables import floats, optional_floats, whole_numbers
 
 # Of the experiments' results the columns that count here: what made them stands in a room above.
@@ -68,6 +70,8 @@ def gather_evidence(calibration: Calibration) -> Evidence:
         truth_sigmas=None if wrong.error_sigmas is None else abs(wrong.error_sigmas),
         truth_parameter=wrong.name,
         noise_model=calibration.noise_model,
+        hand_counts=bool(np.isfinite(chain["disagreement_sigmas"]).any()),
+        exact_axes=exact_axes(calibration.observations, calibration.inliers),
     )
 
 
@@ -75,6 +79,13 @@ def tilt_spread_deg(survey: Survey) -> float:
     """RMS distance of the observations' (roll, pitch) from their mean, in degrees."""
     tilt = np.degrees(body_angles_rad(survey)[:, :2])
     return float(np.sqrt(np.mean(np.sum((tilt - tilt.mean(axis=0)) ** 2, axis=1))))
+
+
+def exact_axes(observations: pd.DataFrame, accepted: Sequence[int]) -> tuple[str, ...]:
+    """Axes of the body pose that any accepted measurement reports with a sigma of next to nothing."""
+    variance = observations.loc[observations["observation"].isin(accepted), list(VARIANCE_COLUMNS)]
+    exact = (variance < np.square(EXACT)).any().to_numpy()
+    return tuple(axis for axis, one in zip(AXES, exact, strict=True) if one)
 
 
 def _accepted_stage(table: pd.DataFrame, results: Results, name: str) -> pd.DataFrame:

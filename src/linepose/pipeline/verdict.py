@@ -17,6 +17,7 @@ from linepose.pipeline.checks import (
     truth,
     worst_observation,
 )
+from linepose.pipeline.navigation_checks import reported_sigmas
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,7 @@ def judge(evidence: Evidence) -> Verdict:
         adjusted = evidence.adjusted
         checks += [doubtful_views(evidence, adjusted), angular_diversity(evidence), curvature(adjusted)]
         checks += [hand_measurement(evidence), draws(adjusted), times(adjusted)]
+    checks.append(reported_sigmas(evidence))
     if evidence.truth_sigmas is not None:
         checks.append(truth(evidence, evidence.truth_sigmas))
     level = max(check.level for check in checks)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.survey.covariance_rule import COVARIANCE_REMEDY, COVARIANCE_WORDS, first_unusable
 from linepose.survey.observations import COVARIANCE_COLUMNS, COVARIANCE_INDICES
 from linepose.tables import floats
 
@@ -45,7 +46,8 @@ def associate_covariances(
 ) -> pd.DataFrame:
     """The points with the covariance of nearest time stamp, and the gap to it in `nav_gap_s` (section 3.3).
 
-    Raises InputError naming the file, and the observation whose gap is the largest where that is too large.
+    Raises InputError naming the file, and the observation whose gap is the largest where that is too large, or whose
+    covariance is none.
     """
     time_us = points["time_us"].to_numpy()
     after = np.searchsorted(navigation.time_us, time_us).clip(1, max(len(navigation.time_us) - 1, 1))
@@ -64,6 +66,12 @@ def associate_covariances(
             "complete the navigation log, correct the clocks, or raise navigation.maximum_gap_s",
         )
     matrices = navigation.covariance[index]
+    unusable = first_unusable(matrices)
+    if unusable is not None:
+        number, name = (points[column].iloc[unusable[0]] for column in ("observation", "point"))
+        raise InputError(
+            f"{navigation.source}: observation {number}, point {name}", unusable[1], COVARIANCE_WORDS, COVARIANCE_REMEDY
+        )
     columns = {name: matrices[:, i, j] for name, (i, j) in zip(COVARIANCE_COLUMNS, COVARIANCE_INDICES, strict=True)}
     return points.assign(**columns, nav_gap_s=gap_s)
 

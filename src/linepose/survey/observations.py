@@ -23,10 +23,10 @@ from linepose.tables import floats, point_column, whole_numbers
 
 POSITION_COLUMNS: Final = ("north_m", "east_m", "down_m")
 EULER_COLUMNS: Final = ("roll_rad", "pitch_rad", "yaw_rad")
-_AXES: Final = ("north", "east", "down", "roll", "pitch", "yaw")
+AXES: Final = ("north", "east", "down", "roll", "pitch", "yaw")
 COVARIANCE_INDICES: Final = tuple((i, j) for i in range(6) for j in range(i, 6))
 POSITION_COVARIANCE_INDICES: Final = tuple((i, j) for i in range(3) for j in range(i, 3))
-COVARIANCE_COLUMNS: Final = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}" for i, j in COVARIANCE_INDICES)
+COVARIANCE_COLUMNS: Final = tuple(f"covariance_{AXES[i]}_{AXES[j]}" for i, j in COVARIANCE_INDICES)
 VARIANCE_COLUMNS: Final = tuple(COVARIANCE_COLUMNS[COVARIANCE_INDICES.index((i, i))] for i in range(6))
 POINT_FIELDS: Final = [
     *whole_numbers("observation"),
@@ -122,10 +122,6 @@ def survey_from_table(table: pd.DataFrame) -> Survey:
         grid[row, column] = values
         return grid
 
-    upper = table[list(COVARIANCE_COLUMNS)].to_numpy()
-    covariance = np.zeros((len(table), 6, 6))
-    for k, (i, j) in enumerate(COVARIANCE_INDICES):
-        covariance[:, i, j] = covariance[:, j, i] = upper[:, k]
     time_us = np.zeros(shape, dtype=np.int64)
     time_us[row, column] = table["time_us"].to_numpy()
     return Survey(
@@ -134,11 +130,20 @@ def survey_from_table(table: pd.DataFrame) -> Survey:
         u_px=gridded(table["u_px"].to_numpy()),
         position_m=gridded(table[list(POSITION_COLUMNS)].to_numpy() - origin, (3,)),
         euler_rad=gridded(table[list(EULER_COLUMNS)].to_numpy(), (3,)),
-        covariance=gridded(covariance, (6, 6)),
+        covariance=gridded(covariance_matrices(table), (6, 6)),
         nav_gap_s=gridded(table["nav_gap_s"].to_numpy()),
         origin_m=origin,
         names=point_names(unique),
     )
+
+
+def covariance_matrices(table: pd.DataFrame) -> Floats:
+    """The covariances (K, 6, 6) of the body poses in the rows of a table of observations."""
+    upper = table[list(COVARIANCE_COLUMNS)].to_numpy(dtype=float)
+    covariance = np.zeros((len(table), 6, 6))
+    for k, (i, j) in enumerate(COVARIANCE_INDICES):
+        covariance[:, i, j] = covariance[:, j, i] = upper[:, k]
+    return covariance
 
 
 def table_from_survey(survey: Survey) -> pd.DataFrame:

@@ -18,6 +18,7 @@ from linepose.config.platform import load_platform
 from linepose.config.study import check_study
 from linepose.estimation.outliers import OutlierSettings
 from linepose.pipeline.adjusted_schemas import VIEWS
+from linepose.pipeline.evidence import exact_axes
 from linepose.pipeline.stages import OPTIMA
 from linepose.survey.observations import COVARIANCE_COLUMNS, OBSERVATIONS, survey_from_table, table_from_survey
 from linepose.tables import read_table
@@ -57,6 +58,26 @@ def arrays(simulated):
 def calibration(simulated, arrays):
     observations = linepose.observations_from_arrays(**arrays)
     return linepose.calibrate(observations, simulated.intrinsics(), BY_HAND, QUICK)
+
+
+@pytest.mark.parametrize(
+    ("factor", "told"),
+    [(0.0, "row 0: found a covariance that is zero"), (-1.0, "row 0: found a covariance with a")],
+)
+def test_a_table_without_usable_covariances_is_refused(simulated, arrays, factor, told):
+    """Also one that was not made by `observations_from_arrays`."""
+    table = linepose.observations_from_arrays(**arrays)
+    table[list(COVARIANCE_COLUMNS)] *= factor
+    with pytest.raises(linepose.InputError, match=f"observations, {told}"):
+        linepose.calibrate(table, simulated.intrinsics(), BY_HAND, QUICK)
+
+
+def test_axes_that_the_navigation_reports_as_exact_are_found(arrays):
+    table = linepose.observations_from_arrays(**arrays)
+    assert exact_axes(table, [1, 2, 3]) == ()
+    table.loc[table["observation"] == 2, ["covariance_yaw_yaw", "covariance_north_north"]] = [0.0, 1e-10]
+    assert exact_axes(table, [1, 2, 3]) == ("north", "yaw")
+    assert exact_axes(table, [1, 3]) == ()
 
 
 def test_import_loads_nothing_heavy():
@@ -174,7 +195,7 @@ def test_bad_observation_is_removed(simulated, arrays):
         ("point", lambda a: a * 0, "point 0 of observation 1 again"),
         ("covariance", lambda a: a + np.eye(6, k=1), "covariance, row 0.*not symmetric"),
         ("covariance", lambda a: -a, "covariance, row 0.*negative"),
-        ("covariance", lambda a: 0 * a, "covariance, row 0: found zero"),
+        ("covariance", lambda a: 0 * a, "covariance, row 0: found a covariance that is zero.*data sheet"),
         (
             "covariance",
             lambda _: [[1e-4]],

@@ -40,7 +40,7 @@ def test_everything_in_order_says_use_it_and_asks_for_nothing():
     assert verdict.level == Level.GOOD
     assert verdict.sentence == "Use this pose: every check passed."
     assert not any(check.advice for check in verdict.checks)
-    assert len(verdict.checks) == 9
+    assert len(verdict.checks) == 10
 
 
 @pytest.mark.parametrize(
@@ -66,6 +66,11 @@ def test_everything_in_order_says_use_it_and_asks_for_nothing():
         ({"hand_sigmas": 3.1}, "Hand measurement", Level.CARE, "Measure again"),
         ({"sigma_factor": 1.7}, "Repeatability", Level.CARE, "Multiply the sigmas by 1.7"),
         ({"truth_sigmas": 3.2}, "Truth", Level.CARE, "repeatability"),
+        ({"exact_axes": ("yaw",)}, "Reported sigmas", Level.CARE, "data sheet"),
+        ({"exact_axes": ("roll", "pitch", "yaw")}, "Reported sigmas", Level.BAD, "data sheet"),
+        ({"hand_sigmas": 6.1, "hand_counts": True}, "Hand measurement", Level.BAD, "correct hand_measured"),
+        ({"hand_sigmas": 5.9, "hand_counts": True}, "Hand measurement", Level.CARE, "Measure again"),
+        ({"hand_sigmas": 40.0}, "Hand measurement", Level.CARE, "Measure again"),
     ],
 )
 def test_each_fault_is_named_with_what_to_do(change, name, level, advice):
@@ -88,7 +93,7 @@ def test_the_papers_chain_is_called_too_short_but_not_its_pose():
 def test_the_worst_level_decides_the_sentence():
     verdict = judge(replace(FINE, converged=False, sigma_factor=2.0))
     assert verdict.level == Level.BAD
-    assert verdict.sentence == "Do not use this pose yet: 1 of 9 checks failed."
+    assert verdict.sentence == "Do not use this pose yet: 1 of 10 checks failed."
     assert [check.name for check in verdict.reasons] == ["Convergence", "Repeatability"]
 
 

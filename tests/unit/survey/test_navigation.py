@@ -184,6 +184,21 @@ def test_one_covariance_serves_alone(time_s, gap_s):
     assert associate_covariances(points(time_s), navigation(0.0), 5.0)["nav_gap_s"].tolist() == [gap_s]
 
 
+@pytest.mark.parametrize(
+    ("matrix", "told"),
+    [
+        (np.zeros((6, 6)), "a covariance that is zero.*data sheet"),
+        (-np.eye(6), "a covariance with a negative eigenvalue"),
+    ],
+)
+def test_names_the_point_whose_covariance_is_none(matrix, told):
+    matrices = np.stack([matrix_12()[:6, :6], matrix])
+    reported = NavigationCovariances(seconds(0.0, 1.0), matrices, "nav_covs.csv")
+    associate_covariances(points(0.1), reported, 1.0)
+    with pytest.raises(InputError, match=f"nav_covs.csv: observation 3, point 1: found {told}"):
+        associate_covariances(points(0.1, 0.9), reported, 1.0)
+
+
 def test_gap_of_exactly_the_maximum_passes():
     associate_covariances(points(2.0), navigation(0.0, 1.0), 1.0)
 

@@ -39,7 +39,11 @@ def log_covariances(
     `attitude_columns` are navigation.covariance_columns, for the file. Raises InputError where there are none.
     """
     if source.covariances is not None:
-        return read_covariances(folder / source.covariances, attitude_columns)
+        path = folder / source.covariances
+        if record.covariances is not None and not path.is_file():
+            remedy = "restore it, or remove source.covariances: the navigation log holds sigmas of its own"
+            raise InputError(str(path), "no such file", "time (us) and 144 covariances", remedy)
+        return read_covariances(path, attitude_columns)
     if record.covariances is None:
         found, expected = "nothing", "a file: the navigation log holds no covariances"
         raise InputError("source.covariances", found, expected, "write the file, or log the covariances too")
