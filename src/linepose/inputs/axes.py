@@ -58,9 +58,12 @@ def turned(covariance: ArrayLike, turn: ArrayLike, euler_rad: ArrayLike) -> tupl
 
 
 def diagonal_covariance(sigma: ArrayLike) -> Floats:
-    """Covariances of independent quantities from standard deviations; (..., N) to (..., N, N)."""
+    """Covariances of independent quantities from standard deviations; (..., N) to (..., N, N).
+
+    A negative deviation gives a negative variance, which no record is joined with.
+    """
     deviations = np.asarray(sigma, dtype=float)
-    return np.asarray(deviations[..., :, None] ** 2 * np.eye(deviations.shape[-1]))
+    return np.asarray((deviations * np.abs(deviations))[..., :, None] * np.eye(deviations.shape[-1]))
 
 
 def joined_covariance(position: ArrayLike, angles: ArrayLike) -> Floats:

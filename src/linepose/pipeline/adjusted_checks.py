@@ -1,5 +1,6 @@
 """The checks that only an adjustment has: weights of views, curvature, draws of the levels."""
 
+from math import isnan
 from typing import Final
 
 from linepose.adjustment.thresholds import (
@@ -11,6 +12,8 @@ from linepose.adjustment.thresholds import (
 from linepose.pipeline.checks import AdjustedEvidence, Check, Evidence, Level
 
 _MANY: Final = 3  # one view in so many may be far off
+_LARGE: Final = 3.0  # times what the navigation reports, from which its errors deserve a look ...
+_FAR_TOO_LARGE: Final = 10.0  # ... and from which something else is wrong
 
 
 def doubtful_views(evidence: Evidence, adjusted: AdjustedEvidence) -> Check:
@@ -36,6 +39,14 @@ def doubtful_views(evidence: Evidence, adjusted: AdjustedEvidence) -> Check:
 
 def curvature(adjusted: AdjustedEvidence) -> Check:
     """Whether the sigmas rest on a curvature that the data show."""
+    if isnan(adjusted.least_eigenvalue):
+        return Check(
+            "Curvature",
+            Level.BAD,
+            "The search ended where the sigmas cannot be had.",
+            "See to the other checks that failed first.",
+            "the search ended where the sigmas cannot be had",
+        )
     found = (
         f"Along the direction that is known least, chi squared curves {adjusted.least_eigenvalue:.2f} of what the "
         "normal equations say."
@@ -77,4 +88,20 @@ def times(adjusted: AdjustedEvidence) -> Check:
         "The measurements have no times that differ: drift of the navigation is not known and not allowed for.",
         "Give the times (time_us): where the navigation drifts the sigmas are too small without them.",
         "without times drift of the navigation is not allowed for",
+    )
+
+
+def error_size(adjusted: AdjustedEvidence) -> Check:
+    """Whether the navigation's errors are about as large as it reports."""
+    found = f"The navigation's errors are {adjusted.navigation_error:.2g} times what it reports."
+    if adjusted.navigation_error <= _LARGE:
+        return Check("Size of the errors", Level.GOOD, found)
+    far_too_large = adjusted.navigation_error > _FAR_TOO_LARGE
+    return Check(
+        "Size of the errors",
+        Level.BAD if far_too_large else Level.CARE,
+        f"{found} Either its sigmas are too small, or something else is wrong that these stand for.",
+        "Run linepose check, which looks for mistakes with axes, signs, units, clocks and the hand measurement; "
+        "else correct the units of the navigation's sigmas.",
+        f"the navigation errs by {adjusted.navigation_error:.2g} times what it reports",
     )

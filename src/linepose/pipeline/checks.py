@@ -44,8 +44,9 @@ class DoubtfulView:
 class AdjustedEvidence:
     """What the verdict on an adjustment rests on beside the rest.
 
-    least_eigenvalue: of the curvature in units of the normal equations; effective_draws, pareto_shape: of the levels;
-    drift_known: whether there are times, without which drift is not allowed for.
+    least_eigenvalue: of the curvature in units of the normal equations, NaN where it could not be had; effective_draws,
+    pareto_shape: of the levels; drift_known: whether there are times, without which drift is not allowed for;
+    navigation_error: of the whole navigation error, in what is reported.
     """
 
     least_eigenvalue: float
@@ -53,6 +54,7 @@ class AdjustedEvidence:
     pareto_shape: float
     doubtful: tuple[DoubtfulView, ...]
     drift_known: bool = True
+    navigation_error: float = 1.0
 
 
 @dataclass(frozen=True)

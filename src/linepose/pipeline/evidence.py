@@ -8,6 +8,7 @@ import pandas as pd
 import pyarrow as pa
 from scipy.special import chdtri
 
+from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.pipeline.adjusted_schemas import LEVELS, VIEWS
@@ -62,7 +63,7 @@ def gather_evidence(calibration: Calibration) -> Evidence:
         threshold_px=calibration.threshold_px,
         hand_sigmas=hand_sigmas,
         hand_parameter=hand_parameter,
-        adjusted=_adjusted(results, chain),
+        adjusted=None if noise_model(calibration.noise_model).removes_outliers else _adjusted(results, chain),
         undecided=tuple(number.name for number in numbers if number.sigma >= number.hand_sigma),
         sigma_factor=_sigma_factor(results),
         most_influential=most_influential,
@@ -114,9 +115,7 @@ def _from_hand(numbers: list[PoseNumber], chain: pd.DataFrame) -> tuple[str, flo
     return most.name, abs(most.difference_sigmas)
 
 
-def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence | None:
-    if not np.isfinite(chain["least_eigenvalue"]).any():
-        return None
+def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:
     views = results.table("adjusted_views", VIEWS)
     levels = results.table("levels", LEVELS).set_index("level")
     doubtful = views[views["fault"] != ""]
@@ -129,7 +128,13 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence | None:
             for _, row in doubtful.iterrows()
         ),
         drift_known=bool(levels.loc["drift", "value"] > 0),
+        navigation_error=navigation_error(levels["value"]),
     )
+
+
+def navigation_error(level: "pd.Series[float]") -> float:
+    """The whole navigation error of positions, in reported sigmas: drift, constant and white together."""
+    return float(np.sqrt(np.sum(level[["drift", "constant", "white"]].astype(float) ** 2)))
 
 
 def _influence(results: Results) -> tuple[int | None, float | None]:

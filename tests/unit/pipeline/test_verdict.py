@@ -130,6 +130,9 @@ def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
         ({"least_eigenvalue": 0.29}, "Curvature", Level.BAD, "Add observations"),
         ({"effective_draws": 19.0}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
         ({"drift_known": False}, "Times", Level.CARE, "Give the times"),
+        ({"least_eigenvalue": float("nan")}, "Curvature", Level.BAD, "other checks"),
+        ({"navigation_error": 3.1}, "Size of the errors", Level.CARE, "units"),
+        ({"navigation_error": 10.1}, "Size of the errors", Level.BAD, "linepose check"),
         ({"pareto_shape": 0.71}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
         (
             {"doubtful": tuple(DoubtfulView(n, 0.1, "jump") for n in range(1, 10))},

@@ -258,6 +258,7 @@ def _joined_covariances(parts: Sequence[Covariances]) -> NavigationCovariances |
     check_increasing(time_us, f"{filled[0].place}, covariances")
     lowest = np.min(np.diagonal(covariance, axis1=1, axis2=2), axis=1)
     for row in np.flatnonzero(~np.all(np.isfinite(covariance), axis=(1, 2)) | (lowest < 0))[:1]:
-        place, found = f"{filled[0].place}, covariance {row + 1}", "a variance that is negative or no number"
-        raise InputError(place, found, "36 finite numbers, variances at least 0", "remove the record")
+        place, found = f"{filled[0].place}, covariance {row + 1}", "a sigma or variance that is negative or no number"
+        remedy = "remove the record, or correct which columns hold the sigmas"
+        raise InputError(place, found, "36 finite numbers, variances at least 0", remedy)
     return NavigationCovariances(time_us, covariance, ", ".join(dict.fromkeys(part.place for part in filled)))

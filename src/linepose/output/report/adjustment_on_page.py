@@ -13,12 +13,11 @@ from linepose.output.report.adjustment_words import (
     LEVEL_WORDS,
     attitude_fits,
     level_values,
-    navigation_error,
 )
 from linepose.output.report.sections import TableOnPage
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS
 from linepose.pipeline.calibration import INLIERS, Calibration
-from linepose.pipeline.evidence import pose_numbers
+from linepose.pipeline.evidence import navigation_error, pose_numbers
 
 
 def pose_table(anchor: str, calibration: Calibration) -> TableOnPage:
@@ -71,7 +70,8 @@ def sigma_table(anchor: str, levels: Mapping[str, pd.DataFrame]) -> TableOnPage:
     """How large errors were beside the reported sigmas, position and attitude, a row a set of observations."""
     rows = []
     for name, table in levels.items():
-        factor, whole = level_values(table).loc["attitude"], navigation_error(table)
+        of_set = level_values(table)
+        factor, whole = of_set.loc["attitude"], navigation_error(of_set["value"])
         verdict = {True: "fit", False: "look wrong", None: "not known"}[attitude_fits(table)]
         cells = [f"{whole:.2f}", f"{whole * factor['value']:.2f}", _interval(*factor)]
         rows.append([set_in_words(name), *cells, verdict])

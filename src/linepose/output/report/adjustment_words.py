@@ -10,6 +10,7 @@ from linepose.adjustment.thresholds import CLOCK, JUMP, LABEL, UNCLEAR
 from linepose.arrays import Floats
 from linepose.experiments.adjustment_beside import INLIERS
 from linepose.output.adjusted import common_share, set_in_words
+from linepose.pipeline.evidence import navigation_error
 
 LEVEL_WORDS: Final = {
     "drift": "Navigation error that drifts (reported sigmas)",
@@ -35,16 +36,10 @@ def level_values(table: pd.DataFrame) -> pd.DataFrame:
     return table.set_index("level")[["value", "low", "high"]].astype(float)
 
 
-def navigation_error(table: pd.DataFrame) -> float:
-    """The whole navigation error of positions, in reported sigmas: drift, constant and white together."""
-    value = level_values(table)["value"]
-    return float(np.sqrt(np.sum(value[["drift", "constant", "white"]] ** 2)))
-
-
 def levels_sentence(table: pd.DataFrame) -> str:
     """The levels in two sentences; `table` as in `LEVELS`."""
     value = level_values(table)["value"]
-    whole = navigation_error(table)
+    whole = navigation_error(value)
     parts = []
     if value["drift"] >= _NOTABLE:
         parts.append(f"{value['drift']:.2g} drifts within {seconds(value['correlation_time_s'])}")

@@ -4,8 +4,9 @@ import pytest
 
 from linepose.errors import InputError
 from linepose.inputs.local_frame import geodetic_from_local
-from linepose.inputs.navigation import read_navigation
+from linepose.inputs.navigation import log_covariances, read_navigation
 from linepose.inputs.navigation.table import TableSection
+from linepose.inputs.source import ScansSection
 from unit.inputs.drive import ORIGIN
 
 FIRST_US = 1_700_000_000_250_000
@@ -176,3 +177,18 @@ def test_seconds_of_the_week_are_not_taken_for_seconds_since_1980(tmp_path):
         read(tmp_path, values, time_unit="s", time_scale="gps")
     keys = {"time_unit": "s", "time_scale": "gps_week", "gps_week": int(GPS_S // 604_800)}
     assert read(tmp_path, values, **keys).log.time_us[0] == FIRST_US
+
+
+def test_a_negative_sigma_is_told(tmp_path):
+    sigmas = {"sigma_position": ("north_m", "north_m", "north_m"), "sigma_attitude": ("yaw_rad",) * 3}
+    values = table(time_us=FIRST_US + 10_000 * np.arange(3), north_m=[1.0, 2.0, -3.0])
+    with pytest.raises(InputError, match=r"log\.csv, covariance 3: found a sigma or variance that is negative"):
+        read(tmp_path, values, columns=sigmas)
+
+
+def test_a_log_with_sigmas_needs_no_file_of_covariances(tmp_path):
+    sigmas = {"sigma_position": ("north_m", "north_m", "north_m"), "sigma_attitude": ("yaw_rad",) * 3}
+    record = read(tmp_path, table(time_us=FIRST_US + 10_000 * np.arange(3), north_m=[1.0, 2.0, 3.0]), columns=sigmas)
+    source = ScansSection(kind="scans", covariances="covariances.csv")
+    with pytest.raises(InputError, match=r"covariances\.csv: found no such file.*remove source\.covariances"):
+        log_covariances(record, source, (3, 4, 5), tmp_path)
