@@ -80,6 +80,14 @@ def test_axes_that_the_navigation_reports_as_exact_are_found(arrays):
     assert exact_axes(table, [1, 3]) == ()
 
 
+def test_a_hand_measurement_that_contradicts_the_data_fails_the_verdict(simulated, arrays):
+    upside = linepose.HandMeasured(position_m=BY_HAND.position_m, euler_deg=(-56.0, 90.0, -90.0))
+    observations = linepose.observations_from_arrays(**arrays)
+    verdict = linepose.calibrate(observations, simulated.intrinsics(), upside, QUICK).verdict()
+    assert [check.name for check in verdict.reasons][0] == "Hand measurement"
+    assert "Do not use this pose" in verdict.sentence
+
+
 def test_import_loads_nothing_heavy():
     code = "import sys, linepose; linepose.__doc__; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
