@@ -84,7 +84,7 @@ def test_a_hand_measurement_that_contradicts_the_data_fails_the_verdict(simulate
     upside = linepose.HandMeasured(position_m=BY_HAND.position_m, euler_deg=(-56.0, 90.0, -90.0))
     observations = linepose.observations_from_arrays(**arrays)
     verdict = linepose.calibrate(observations, simulated.intrinsics(), upside, QUICK).verdict()
-    assert [check.name for check in verdict.reasons][0] == "Hand measurement"
+    assert verdict.reasons[0].name == "Hand measurement"
     assert "Do not use this pose" in verdict.sentence
 
 
