@@ -118,7 +118,7 @@ def test_names_from_files_are_escaped(page):
 
 def test_the_page_answers_from_the_top(read):
     text = " ".join(" ".join(read.text).split())
-    assert "Use this pose with care: look at 4 of 8 checks." in text
+    assert "Use this pose with care: look at 4 of 9 checks." in text
     assert re.search(r"Random halves of the observations lie (1\.9|2\.0)\d times as far apart as stated\.", text)
     assert "What to do: Multiply the sigmas by 2.0" in text
     assert "r_x forward (m) 0.1900 0.03" in text  # the pose with its sigma

@@ -21,7 +21,7 @@ def test_every_platform_has_its_card_and_links_to_its_page(results):
     page = page_of(summary, replace(summary, name="other"))
     assert page.count('href="made-up/report.html"') == page.count('href="other/report.html"') == 2
     assert 'href="another.html"' in page
-    assert "Use this pose with care: look at 4 of 8 checks." in page
+    assert "Use this pose with care: look at 4 of 9 checks." in page
     assert "The chain has 20 steps where 200 are needed. <strong>Set sampling.n_steps to 200" in page
 
 
