@@ -66,7 +66,8 @@ def associate_covariances(
             "complete the navigation log, correct the clocks, or raise navigation.maximum_gap_s",
         )
     matrices = navigation.covariance[index]
-    unusable = first_unusable(matrices)
+    # turned covariances are symmetric but for rounding
+    unusable = first_unusable((matrices + np.swapaxes(matrices, 1, 2)) / 2)
     if unusable is not None:
         number, name = (points[column].iloc[unusable[0]] for column in ("observation", "point"))
         raise InputError(
