@@ -21,7 +21,7 @@ from linepose.adjustment.many_points import (
     spread_of_many,
 )
 from linepose.adjustment.measurements import Measurements, measurements_from_survey
-from linepose.adjustment.normal import COMMON_SHIFT, trailing_inverse
+from linepose.adjustment.normal import trailing_inverse
 from linepose.adjustment.result import Adjustment
 from linepose.adjustment.settings import AdjustmentSettings, default_hand_covariance
 from linepose.adjustment.start import start_points
@@ -139,7 +139,7 @@ def _of_many(
         many.chi_squared,
         many.converged and found.converged and not ran_off(hand, many.state.position_m),
         np.full((measurements.n_points, 3, 3), np.nan),
-        float(np.sqrt(many.camera_covariance[COMMON_SHIFT, COMMON_SHIFT])),
+        many.camera_covariance,
     )
     all_at_once = AllAtOnce(fit, found, told.curved, spread, known)
     return assembled(survey, measurements, knowledge, all_at_once, settings)
