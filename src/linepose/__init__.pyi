@@ -14,6 +14,7 @@ from .pipeline.api import observations_from_arrays as observations_from_arrays
 from .pipeline.calibrate import CalibrationSettings as CalibrationSettings
 from .pipeline.calibrate import calibrate as calibrate
 from .pipeline.calibration import Calibration as Calibration
+from .pipeline.comparison import Comparison as Comparison
 from .pipeline.recheck import Recheck as Recheck
 from .pipeline.recheck import recheck_platform as recheck_platform
 from .survey.hand_measured import HandMeasured as HandMeasured

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 import linepose
-from linepose.cli import check, export, label, new, recheck, run, show, target
+from linepose.cli import check, compare, export, label, new, recheck, run, show, target
 from linepose.cli import map as map_command
 from linepose.cli.faults import OneLineFaults
 from linepose.cli.three_numbers import ThreeNumbers
@@ -18,7 +18,7 @@ app = typer.Typer(
     "**label** marks the pattern's points where scans "
     "are not labelled yet, **check** tells what is wrong before a run, **run** calibrates, "
     "**show** tells the pose, **export** writes it for the robot, **map** puts scans on the map, "
-    "**recheck** tells from new views whether it still holds.",
+    "**recheck** tells from new views whether it still holds, **compare** how two calibrations differ.",
     no_args_is_help=True,
     rich_markup_mode="markdown",
     add_completion=False,
@@ -51,3 +51,4 @@ app.command(name="show")(show.show)
 app.command(name="export")(export.export)
 app.command(name="map")(map_command.map_scans)
 app.command(name="recheck")(recheck.recheck)
+app.command(name="compare")(compare.compare)

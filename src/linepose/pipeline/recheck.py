@@ -16,7 +16,7 @@ from linepose.errors import EstimationError, InputError
 from linepose.estimation.adjustment_estimator import adjustment_estimator
 from linepose.estimation.estimator import Conditions
 from linepose.estimation.noise_models import ADJUSTMENT
-from linepose.estimation.pose_change import FALSE_ALARMS, GROUPS, POWER, WHOLE, PoseChange
+from linepose.estimation.pose_change import FALSE_ALARMS, GROUPS, MOVES, PER_MOVE, POWER, WHOLE, PoseChange
 from linepose.estimation.recheck import recheck as compare_views
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.pipeline.calibration import Calibration
@@ -26,8 +26,6 @@ from linepose.pipeline.project_folder import find_project, load_platform_project
 from linepose.survey.observations import survey_from_table
 from linepose.survey.point_knowledge import KNOWN_POINTS, PointKnowledge, knowledge_from_table
 
-MOVES: Final = ("forward_m", "right_m", "down_m", "roll_deg", "pitch_deg", "yaw_deg")  # turns about body axes
-PER_MOVE: Final = np.array([1.0] * 3 + [float(np.degrees(1.0))] * 3)
 VERSION: Final = 1
 _SAME_SIGMAS: Final = 0.1  # by which the calibration may differ from what its observations say now
 

@@ -1,0 +1,122 @@
+"""Two calibrations beside each other: by parameter, by how unlikely the difference is, and by what a pixel moves."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from linepose.arrays import Floats
+from linepose.errors import InputError
+from linepose.estimation.pixel_shift import Mounted, pixel_shift, shift_covariance
+from linepose.estimation.pose_change import GROUPS, MOVES, PER_MOVE, PoseChange, change_of_estimates
+from linepose.geometry.distance import check_covariance, difference_covariance, pose_difference
+from linepose.pipeline.calibration import HAND_MEASURED, Calibration
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """How a second calibration differs from a first.
+
+    `difference` (6,) and its `covariance` (6, 6): m, and turn (rad) about body axes; `pixels`: one row a place on the
+    line, with the shift along and across it (m) and sigmas; `shares_hand_measurement`: whether both rest on the same.
+    """
+
+    names: tuple[str, str]
+    difference: Floats
+    covariance: Floats
+    range_m: float
+    pixels: pd.DataFrame
+    shares_hand_measurement: bool
+
+    @property
+    def change(self) -> PoseChange:
+        """The difference as tests and moves."""
+        return change_of_estimates(self.difference, self.covariance)
+
+    def table(self) -> pd.DataFrame:
+        """One row a number: `difference`, `sigma`, in m and degrees, and `sigmas`."""
+        sigma = np.sqrt(np.diag(self.covariance))
+        columns = {"difference": self.difference * PER_MOVE, "sigma": sigma * PER_MOVE}
+        return pd.DataFrame(columns, index=list(MOVES)).assign(sigmas=self.difference / sigma)
+
+    def as_dict(self) -> dict[str, Any]:
+        """All of it as JSON holds it."""
+        tests = {group: self.change.test(group) for group in GROUPS}
+        return {
+            "format": "linepose comparison",
+            "version": 1,
+            "first": self.names[0],
+            "second": self.names[1],
+            "differences": self.table().to_dict(orient="index"),
+            "tests": {group: {"sigmas": one.distance, "p_value": one.p_value} for group, one in tests.items()},
+            "range_m": self.range_m,
+            "pixels": {
+                place: {name: float(value) if np.isfinite(value) else None for name, value in row.items()}
+                for place, row in self.pixels.iterrows()
+            },
+            "shares_hand_measurement": self.shares_hand_measurement,
+        }
+
+
+def compare(first: Calibration, second: Calibration, range_m: float) -> Comparison:
+    """What leads from the first calibration to the second, and what a pixel's place moves at a range (m).
+
+    A hand measurement that is the same prior of both counts once; all else is taken as independent. Raises InputError
+    for a range that is none, and for cameras of different lines.
+    """
+    if not (np.isfinite(range_m) and range_m > 0):
+        raise InputError("range", f"{range_m} m", "a distance above 0", "give that of the ground from the camera")
+    if first.camera.n_pixels != second.camera.n_pixels:
+        raise InputError(
+            f"camera of {second.name}",
+            f"{second.camera.n_pixels} pixels",
+            f"{first.camera.n_pixels}, as {first.name} has",
+            "compare calibrations of one camera",
+        )
+    covariances = [
+        difference_covariance(one.pose, check_covariance(one.covariance, f"covariance of {one.name}"))
+        for one in (first, second)
+    ]
+    shared = _prior_of(first) is not None and _same(_prior_of(first), _prior_of(second))
+    total = covariances[0] + covariances[1]
+    if shared:
+        common = covariances[1] @ np.linalg.solve(first.hand_measured.body_covariance, covariances[0])
+        total = total - common - common.T
+    mounted = [Mounted(one.camera, one.pose) for one in (first, second)]
+    return Comparison(
+        (first.name, second.name),
+        pose_difference(second.pose, first.pose),
+        total,
+        range_m,
+        _pixels(mounted[0], mounted[1], range_m, total),
+        shared,
+    )
+
+
+def _prior_of(calibration: Calibration) -> Floats | None:
+    """Pose and sigmas of the hand measurement where it is a prior of the calibration."""
+    if calibration.stage == HAND_MEASURED or calibration.platform is None or calibration.platform.prior == "none":
+        return None
+    hand = calibration.hand_measured
+    return np.concatenate([hand.pose, np.sqrt(np.diag(hand.body_covariance))])
+
+
+def _same(one: Floats | None, other: Floats | None) -> bool:
+    return one is not None and other is not None and bool(np.array_equal(one, other))
+
+
+def _pixels(first: Mounted, second: Mounted, range_m: float, covariance: Floats) -> pd.DataFrame:
+    last = first.camera.n_pixels - 1
+    rows = {}
+    for place, pixel in (("first", 0.0), ("centre", last / 2), ("last", float(last))):
+        along, across = pixel_shift(first, second, pixel, range_m)
+        sigma = np.sqrt(np.diag(shift_covariance(first, second, pixel, range_m, covariance)))
+        rows[place] = {
+            "along_m": along,
+            "across_m": across,
+            "sigma_along_m": sigma[0],
+            "sigma_across_m": sigma[1],
+            "shift_px": float(np.hypot(along, across)) * first.camera.focal_length_px / range_m,
+        }
+    return pd.DataFrame.from_dict(rows, orient="index")
