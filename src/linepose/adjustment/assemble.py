@@ -59,7 +59,7 @@ def assembled(
     known[:, measurements.points] = done.known.weight, done.known.sigmas
     shifted = bool(np.any(state.shifts))
     of_intrinsics = fit.camera_covariance[:N_INTRINSICS, :N_INTRINSICS]
-    pose_by_intrinsics = np.linalg.solve(of_intrinsics, fit.camera_covariance[:N_INTRINSICS, -N_POSE:]).T
+    by_intrinsics = np.linalg.solve(of_intrinsics, fit.camera_covariance[:N_INTRINSICS, -N_POSE:]).T
     view_rows = np.empty(measurements.n_views, dtype=np.int64)
     view_rows[measurements.view] = measurements.row
     constants, view_weight = np.full((survey.n_observations, N_POSE), np.nan), np.full(survey.n_observations, np.nan)
@@ -70,7 +70,7 @@ def assembled(
         principal_point_px=state.principal_point_px,
         focal_length_m=state.focal_length_m,
         intrinsics_covariance=of_intrinsics,
-        pose_by_intrinsics=pose_by_intrinsics,
+        pose_by_intrinsics=np.asarray(by_intrinsics, dtype=float),
         points_m=points,
         point_covariance=point_covariance,
         levels=found.levels,
