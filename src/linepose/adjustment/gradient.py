@@ -54,12 +54,15 @@ def reduced_columns(done: Pass) -> Floats:
     for row in range(done.whitened.shape[0]):
         target, source = out[row], done.whitened[row]
         i = 0
-        while i + 4 <= n:
+        while i + 8 <= n:
             i0, i1, i2, i3 = inverse[i], inverse[i + 1], inverse[i + 2], inverse[i + 3]
+            i4, i5, i6, i7 = inverse[i + 4], inverse[i + 5], inverse[i + 6], inverse[i + 7]
             a0, a1, a2, a3 = source[i], source[i + 1], source[i + 2], source[i + 3]
+            a4, a5, a6, a7 = source[i + 4], source[i + 5], source[i + 6], source[i + 7]
             for j in range(i, n):
-                target[j] += a0 * i0[j] + a1 * i1[j] + a2 * i2[j] + a3 * i3[j]
-            i += 4
+                first = a0 * i0[j] + a1 * i1[j] + a2 * i2[j] + a3 * i3[j]
+                target[j] += first + (a4 * i4[j] + a5 * i5[j] + a6 * i6[j] + a7 * i7[j])
+            i += 8
         while i < n:
             i0, a0 = inverse[i], source[i]
             for j in range(i, n):

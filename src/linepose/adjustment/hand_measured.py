@@ -6,15 +6,18 @@ is, where sigmas of Euler angles shrink to nothing as pitch nears a right angle.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
 from linepose.arrays import Floats
+from linepose.compiling.kernels import kernel
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.geometry.pose import check_pose
 
+_SMALL_ANGLE_RAD: Final = 1e-4  # below this the series is exact to double precision
 FARTHEST_SIGMAS: Final = 20.0  # of the hand measurement ...
 FARTHEST_M: Final = 2.0  # ... but no nearer than this
 
@@ -31,13 +34,62 @@ class HandMeasuredPrior:
 
         At a position (3,) and rotation (3, 3) of the camera in the body.
         """
-        turn = rotations.rotation_vector_from_matrix(rotations.matrix_from_rotation_vector(self.pose[3:]) @ rotation.T)
-        error = np.concatenate([self.pose[:3] - position_m, turn])
-        by_step = np.eye(6)
-        by_step[3:, 3:] = np.linalg.inv(rotations.left_jacobian_so3(-turn))
-        inverse = np.linalg.inv(self.covariance)
-        weighted = by_step.T @ inverse
-        return weighted @ by_step, weighted @ error, float(error @ inverse @ error)
+        error, by_step = _error_of_step(self.pose[:3] - position_m, self._rotation, rotation)
+        weighted = by_step.T @ self._information
+        return weighted @ by_step, weighted @ error, float(error @ self._information @ error)
+
+    @cached_property
+    def _rotation(self) -> Floats:
+        return rotations.matrix_from_rotation_vector(self.pose[3:])
+
+    @cached_property
+    def _information(self) -> Floats:
+        return np.asarray(np.linalg.inv(self.covariance))
+
+
+@kernel
+def _error_of_step(offset_m: Floats, hand: Floats, rotation: Floats) -> tuple[Floats, Floats]:
+    """The error (6,) of an offset (3,) and of rotations (3, 3), and its Jacobian (6, 6) by a step."""
+    relative = hand @ rotation.T
+    turn = _rotation_vector(relative)
+    squared = turn[0] ** 2 + turn[1] ** 2 + turn[2] ** 2
+    angle = np.sqrt(squared)
+    of_square = 1 / 12 if angle < _SMALL_ANGLE_RAD else (1 - 0.5 * angle / np.tan(0.5 * angle)) / squared
+    error, by_step = np.empty(6), np.eye(6)
+    for i in range(3):
+        error[i], error[3 + i] = offset_m[i], turn[i]
+        j, k = (i + 1) % 3, (i + 2) % 3
+        by_step[3 + i, 3 + j] -= 0.5 * turn[k]
+        by_step[3 + i, 3 + k] += 0.5 * turn[j]
+        by_step[3 + i, 3 + i] -= of_square * squared
+        for other in range(3):
+            by_step[3 + i, 3 + other] += of_square * turn[i] * turn[other]
+    return error, by_step
+
+
+@kernel
+def _rotation_vector(matrix: Floats) -> Floats:
+    """The rotation vector (3,), at most pi long, of a rotation matrix (3, 3), by its quaternion (Shepperd 1978)."""
+    trace = matrix[0, 0] + matrix[1, 1] + matrix[2, 2]
+    largest = np.array([matrix[0, 0], matrix[1, 1], matrix[2, 2], trace]).argmax()
+    vector = np.empty(3)
+    if largest == 3:
+        scalar = 1.0 + trace
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            vector[i] = matrix[k, j] - matrix[j, k]
+    else:
+        i = largest
+        j, k = (i + 1) % 3, (i + 2) % 3
+        vector[i] = 1.0 - trace + 2.0 * matrix[i, i]
+        vector[j], vector[k] = matrix[j, i] + matrix[i, j], matrix[k, i] + matrix[i, k]
+        scalar = matrix[k, j] - matrix[j, k]
+    if scalar < 0.0:
+        scalar, vector = -scalar, -vector
+    length = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    if length == 0.0:
+        return vector
+    return vector * (2.0 * np.arctan2(length, scalar) / length)
 
 
 def hand_measured(pose: Floats, covariance: Floats) -> HandMeasuredPrior:

@@ -63,18 +63,6 @@ class LevelPriors(Settings):
             raise ValueError(f"{N_LEVELS} numbers from {_LEAST_LOG_SIGMA:g} to {_LARGEST_LOG_SIGMA:g}")
         return log_sigma
 
-    def log_density(self, log_levels: Floats, estimated: Floats) -> float:
-        """Logarithm of the density of the logarithms of the levels (7,), but for a constant; those `estimated` count.
-
-        `estimated` (7,) is 1 for a level that counts and 0 for one that is held.
-        """
-        scaled = (log_levels - np.log(self.median)) / np.asarray(self.log_sigma)
-        return float(-0.5 * np.sum(estimated * scaled**2))
-
-    def gradient(self, log_levels: Floats) -> Floats:
-        """Gradient (7,) of the logarithm of the density by the logarithms of the levels (7,), each estimated."""
-        return -(log_levels - np.log(self.median)) / np.asarray(self.log_sigma) ** 2
-
 
 def levels_from_log(log_levels: Floats) -> Levels:
     """Levels of their natural logarithms (7,); minus infinity is a component that is switched off."""

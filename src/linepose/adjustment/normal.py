@@ -86,13 +86,17 @@ def design(linearised: Linearised, correction: Floats, point_of: np.ndarray, n_p
 def products(rows: Floats, n: int) -> Floats:
     """Products (n, n) of the first n columns (m, >= n), upper triangle."""
     out = np.zeros((n, n))
-    for r in range(0, rows.shape[0] - rows.shape[0] % 4, 4):
+    whole = rows.shape[0] - rows.shape[0] % 8
+    for r in range(0, whole, 8):  # a target that is read and written once for eight rows
         r0, r1, r2, r3 = rows[r], rows[r + 1], rows[r + 2], rows[r + 3]
+        r4, r5, r6, r7 = rows[r + 4], rows[r + 5], rows[r + 6], rows[r + 7]
         for i in range(n):
             a0, a1, a2, a3, target = r0[i], r1[i], r2[i], r3[i], out[i]
+            a4, a5, a6, a7 = r4[i], r5[i], r6[i], r7[i]
             for j in range(i, n):
-                target[j] += a0 * r0[j] + a1 * r1[j] + a2 * r2[j] + a3 * r3[j]
-    for r in range(rows.shape[0] - rows.shape[0] % 4, rows.shape[0]):
+                first = a0 * r0[j] + a1 * r1[j] + a2 * r2[j] + a3 * r3[j]
+                target[j] += first + (a4 * r4[j] + a5 * r5[j] + a6 * r6[j] + a7 * r7[j])
+    for r in range(whole, rows.shape[0]):
         for i in range(n):
             for j in range(i, n):
                 out[i, j] += rows[r, i] * rows[r, j]

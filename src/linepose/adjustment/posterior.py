@@ -12,9 +12,8 @@ import numpy as np
 from scipy.special import logsumexp
 
 from linepose.adjustment.importance import smoothed_weights
-from linepose.adjustment.normal import trailing_inverse
 from linepose.adjustment.proposal import Proposal, split_at_mode
-from linepose.adjustment.reml import NOTHING, Restricted
+from linepose.adjustment.reml import Restricted
 from linepose.arrays import Floats
 
 STAGE_SHARES: Final = (0.25, 0.25, 0.5)  # of the draws
@@ -84,7 +83,7 @@ def mixture(restricted: Restricted, mode: Floats, stretch: Floats, n_draws: int,
     )
 
 
-class _Drawn(NamedTuple):
+class _Component(NamedTuple):
     """Logarithms of levels (D, F), their negative log-density (D,), mean (D, S) and covariance there."""
 
     logs: Floats
@@ -93,23 +92,12 @@ class _Drawn(NamedTuple):
     covariance: Floats
 
 
-def _components(restricted: Restricted, logs: Floats, size: int) -> _Drawn:
-    count = len(logs)
-    density, mean, covariance = np.empty(count), np.empty((count, size)), np.empty((count, size, size))
-    for k, row in enumerate(logs):
-        done = restricted.done(row)
-        density[k] = restricted.negative_log_density_of(done, row)
-        if density[k] >= NOTHING:  # of no weight, but it has to be a normal distribution
-            mean[k], covariance[k] = 0.0, np.eye(size)
-            continue
-        n = len(done.upper) - 1
-        block = np.triu(done.upper[n - size : n, n - size : n])
-        covariance[k] = trailing_inverse(done.upper, size)
-        mean[k] = covariance[k] @ (block.T @ done.upper[n - size : n, n])
-    return _Drawn(logs, density, mean, covariance)
+def _components(restricted: Restricted, logs: Floats, size: int) -> _Component:
+    density, drawn = restricted.drawn(logs, size)
+    return _Component(logs, density, drawn.mean, drawn.covariance)
 
 
-def _weights(proposals: list[Proposal], counts: list[int], drawn: list[_Drawn]) -> tuple[Floats, float]:
+def _weights(proposals: list[Proposal], counts: list[int], drawn: list[_Component]) -> tuple[Floats, float]:
     """Weights of all draws against the mixture of their proposals, and the Pareto shape."""
     logs = np.concatenate([part.logs for part in drawn])
     shares = np.log(np.array(counts) / sum(counts))

@@ -9,13 +9,15 @@ belong to it (Neyman and Scott: without them levels are too small), at the same 
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 from scipy.optimize import minimize
 
+from linepose.adjustment.draws import Drawn, passes_at
 from linepose.adjustment.gradient import slopes_of_density
-from linepose.adjustment.levels import N_LEVELS, LevelPriors, Levels, levels_from_log, log_from_levels
+from linepose.adjustment.levels import LevelPriors, Levels, levels_from_log, log_from_levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import Pass
 from linepose.adjustment.process import Weights
@@ -55,31 +57,43 @@ class Restricted:
     def negative_log_density(self, free_logs: Floats) -> float:
         """The negative logarithm of the density of the logarithms of free levels (F,), but for a constant."""
         done = self.done(free_logs)
-        return self.negative_log_density_of(done, free_logs)
+        return float(self._negative_log(np.array(done.chi_squared + done.log_determinant), free_logs))
 
-    def negative_log_density_of(self, done: Pass, free_logs: Floats) -> float:
-        """The same from a pass that is done; a large number where the density is zero."""
-        value = 0.5 * (done.chi_squared + done.log_determinant) - self._log_prior(free_logs)
-        return value if np.isfinite(value) else NOTHING
+    def drawn(self, free_logs: Floats, size: int) -> tuple[Floats, Drawn]:
+        """The negative logarithm (D,) at draws of free levels' logarithms (D, F), and each pass's last columns."""
+        model = self.model
+        logs = np.repeat(self.fixed[None], len(free_logs), axis=0)
+        logs[:, list(self.free)] = free_logs
+        structure = self.measurements.structure
+        found = passes_at(model.rows, structure, model.image, self.weights, model.prior, logs, size)
+        return self._negative_log(found.deviance, free_logs), found
 
-    def _log_prior(self, free_logs: Floats) -> float:
-        estimated = np.zeros(N_LEVELS)
-        estimated[list(self.free)] = 1.0
-        logs = np.where(estimated > 0, self.log_levels(free_logs), 0.0)
-        return self.priors.log_density(logs, estimated)
+    def _negative_log(self, deviance: Floats, free_logs: Floats) -> Floats:
+        """From chi squared and log-determinant together (...,), at free logarithms (..., F).
+
+        A large number where the density is zero.
+        """
+        median, sigma = self._prior
+        value = 0.5 * deviance + 0.5 * np.sum(((free_logs - median) / sigma) ** 2, axis=-1)
+        return np.where(np.isfinite(value), value, NOTHING)
+
+    @cached_property
+    def _prior(self) -> tuple[Floats, Floats]:
+        """Median and sigma (F,) of the free levels' logarithms."""
+        free = list(self.free)
+        return np.log(np.asarray(self.priors.median))[free], np.asarray(self.priors.log_sigma)[free]
 
     def value_and_gradient(self, free_logs: Floats) -> tuple[float, Floats]:
         """The negative logarithm of the density at logarithms (F,), and its gradient (F,)."""
         logs = self.log_levels(free_logs)
         levels = levels_from_log(logs)
         process, done = pass_at(self.measurements, self.model, levels, self.weights)
-        value = self.negative_log_density_of(done, free_logs)
+        value = float(self._negative_log(np.array(done.chi_squared + done.log_determinant), free_logs))
         if value >= NOTHING:
             return value, np.zeros(len(free_logs))
         slopes = slopes_of_density(self.measurements.structure, self.model.image, process, levels, self.weights, done)
-        by_logs = 0.5 * slopes.by_level
-        by_logs[list(self.free)] -= self.priors.gradient(logs)[list(self.free)]
-        return value, by_logs[list(self.free)]
+        median, sigma = self._prior
+        return value, 0.5 * slopes.by_level[list(self.free)] + (free_logs - median) / sigma**2
 
     def hessian(self, free_logs: Floats, step: float) -> Floats:
         """Hessian (F, F) of the negative logarithm by central differences of its gradient, symmetric."""

@@ -34,61 +34,66 @@ class Factor(NamedTuple):
 
 @kernel
 def factorise(process: Components, view: np.ndarray, begins: np.ndarray) -> Factor:
-    """The factor of the covariance of all measurements; log_determinant is NaN where it is not positive definite."""
+    """The factor of the covariance of all measurements; log_determinant is NaN where it is not positive definite.
+
+    The state's covariance is held in blocks, of the drift, of the constant and of one with the other: both reach a
+    measurement by the same image.
+    """
     n = process.decay.shape[0]
     observe, gain, root = np.empty((n, 2, N_STATE)), np.empty((n, N_STATE, 2)), np.empty((n, 3))
-    p = np.eye(N_STATE)
-    cross = np.empty((2, N_STATE))
-    log_determinant = 0.0
+    of_drift, of_both, of_constant = np.eye(6), np.zeros((6, 6)), np.eye(6)
+    cross = np.empty((4, 6))  # with the innovation: drift by u and v, constant by u and v
+    log_determinant, drift = 0.0, process.drift
     for line in range(n):
         constant, decay = process.constant[view[line]], process.decay[line]
-        for row in range(2):
+        by_u, by_v = process.by_state[line, 0], process.by_state[line, 1]
+        if begins[line]:
             for i in range(6):
-                observe[line, row, i] = process.drift * process.by_state[line, row, i]
-                observe[line, row, 6 + i] = constant * process.by_state[line, row, i]
-        for i in range(6):
-            if begins[line]:
-                for j in range(N_STATE):
-                    p[6 + i, j] = 0.0
-                    p[j, 6 + i] = 0.0
-                p[6 + i, 6 + i] = 1.0
+                for j in range(6):
+                    of_both[i, j] = 0.0
+                    of_constant[i, j] = 1.0 if i == j else 0.0
         decay2 = decay * decay
         for i in range(6):
             for j in range(6):
-                p[i, j] *= decay2
-            for j in range(6, 12):
-                p[i, j] *= decay
-                p[j, i] *= decay
-            p[i, i] += 1.0 - decay2
-        h0, h1 = observe[line, 0], observe[line, 1]
-        c0, c1 = cross[0], cross[1]
-        c0[:] = 0.0
-        c1[:] = 0.0
-        for i in range(N_STATE):
-            a, b, row_p = h0[i], h1[i], p[i]
-            for j in range(N_STATE):
-                c0[j] += a * row_p[j]
-                c1[j] += b * row_p[j]
+                of_drift[i, j] *= decay2
+                of_both[i, j] *= decay
+            of_drift[i, i] += 1.0 - decay2
+        for j in range(6):
+            drift_u, drift_v, constant_u, constant_v = 0.0, 0.0, 0.0, 0.0
+            for i in range(6):
+                with_drift = drift * of_drift[j, i] + constant * of_both[j, i]
+                with_constant = drift * of_both[i, j] + constant * of_constant[j, i]
+                drift_u += by_u[i] * with_drift
+                drift_v += by_v[i] * with_drift
+                constant_u += by_u[i] * with_constant
+                constant_v += by_v[i] * with_constant
+            cross[0, j], cross[1, j], cross[2, j], cross[3, j] = drift_u, drift_v, constant_u, constant_v
         s00, s10, s11 = process.noise[line, 0], process.noise[line, 1], process.noise[line, 2]
-        for i in range(N_STATE):
-            s00 += c0[i] * h0[i]
-            s10 += c1[i] * h0[i]
-            s11 += c1[i] * h1[i]
+        for i in range(6):
+            u, v = drift * cross[0, i] + constant * cross[2, i], drift * cross[1, i] + constant * cross[3, i]
+            s00 += u * by_u[i]
+            s10 += v * by_u[i]
+            s11 += v * by_v[i]
         l00 = np.sqrt(s00)
         l10 = s10 / l00
         l11 = np.sqrt(s11 - l10 * l10)
         log_determinant += 2.0 * (np.log(l00) + np.log(l11))
         i00, i11 = 1.0 / l00, 1.0 / l11
         root[line, 0], root[line, 1], root[line, 2] = i00, l10, i11
-        for i in range(N_STATE):
-            c0[i] *= i00
-            c1[i] = (c1[i] - l10 * c0[i]) * i11
-            gain[line, i, 0] = c0[i]
-            gain[line, i, 1] = c1[i]
-        for i in range(N_STATE):
-            a, b, row_p = c0[i], c1[i], p[i]
-            for j in range(N_STATE):
-                row_p[j] -= a * c0[j] + b * c1[j]
+        for i in range(6):
+            for block in range(2):
+                first = cross[2 * block, i] * i00
+                second = (cross[2 * block + 1, i] - l10 * first) * i11
+                cross[2 * block, i], cross[2 * block + 1, i] = first, second
+                gain[line, 6 * block + i, 0], gain[line, 6 * block + i, 1] = first, second
+            observe[line, 0, i], observe[line, 1, i] = drift * by_u[i], drift * by_v[i]
+            observe[line, 0, 6 + i], observe[line, 1, 6 + i] = constant * by_u[i], constant * by_v[i]
+        for i in range(6):
+            a, b, c, d = cross[0, i], cross[1, i], cross[2, i], cross[3, i]
+            for j in range(6):
+                of_drift[i, j] -= a * cross[0, j] + b * cross[1, j]
+                of_both[i, j] -= a * cross[2, j] + b * cross[3, j]
+                of_constant[i, j] -= c * cross[2, j] + d * cross[3, j]
     return Factor(observe, gain, root, process.decay, begins, log_determinant)
 
 
