@@ -71,7 +71,7 @@ def _error_of_step(offset_m: Floats, hand: Floats, rotation: Floats) -> tuple[Fl
 def _rotation_vector(matrix: Floats) -> Floats:
     """The rotation vector (3,), at most pi long, of a rotation matrix (3, 3), by its quaternion (Shepperd 1978)."""
     trace = matrix[0, 0] + matrix[1, 1] + matrix[2, 2]
-    largest = np.array([matrix[0, 0], matrix[1, 1], matrix[2, 2], trace]).argmax()
+    largest = int(np.array([matrix[0, 0], matrix[1, 1], matrix[2, 2], trace]).argmax())
     vector = np.empty(3)
     if largest == 3:
         scalar = 1.0 + trace
