@@ -38,8 +38,11 @@ def labels_hold(table: pd.DataFrame) -> bool:
 
 
 def views_hold(table: pd.DataFrame) -> bool:
-    """Points of numbers on the sensor."""
-    return bool(np.isfinite(table).all(axis=None) and table["u_px"].between(-0.5, 647.5).all())
+    """Points with names, at places of numbers on the sensor."""
+    named = all(str(one).isprintable() and str(one).strip() for one in table["point"])
+    return bool(
+        named and np.isfinite(table.drop(columns="point")).all(axis=None) and table["u_px"].between(-0.5, 647.5).all()
+    )
 
 
 def covariances_hold(covariances: Any) -> bool:
