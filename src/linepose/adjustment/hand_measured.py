@@ -115,8 +115,3 @@ def ran_off(hand: HandMeasuredPrior | None, position_m: Floats) -> bool:
         return False
     sigma_m = np.sqrt(np.diag(hand.covariance)[:3])
     return bool(np.any(np.abs(position_m - hand.pose[:3]) > np.maximum(FARTHEST_SIGMAS * sigma_m, FARTHEST_M)))
-
-
-def covariance_of_sigmas(position_m: float, rotation_rad: float) -> Floats:
-    """Covariance (6, 6) of one sigma of position on every axis (m) and one of turn about every body axis (rad)."""
-    return np.diag([position_m**2] * 3 + [rotation_rad**2] * 3)

@@ -5,7 +5,6 @@ from typing import Final
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat, field_validator
 
-from linepose.adjustment.hand_measured import covariance_of_sigmas
 from linepose.adjustment.levels import START, LevelPriors, Levels, check_levels
 from linepose.arrays import Floats
 from linepose.settings import Settings
@@ -52,6 +51,11 @@ class AdjustmentSettings(AdjustmentSection):
         "zero (s); the offset is then estimated with the pose. Not estimated if null.",
     )
     seed: NonNegativeInt = Field(0, description="Seed of all draws.")
+
+
+def covariance_of_sigmas(position_m: float, rotation_rad: float) -> Floats:
+    """Covariance (6, 6) of one sigma of position on every axis (m) and one of turn about every body axis (rad)."""
+    return np.diag([position_m**2] * 3 + [rotation_rad**2] * 3)
 
 
 def default_hand_covariance() -> Floats:

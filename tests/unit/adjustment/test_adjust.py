@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from linepose.adjustment import AdjustmentSettings, KnownPoints, adjust
-from linepose.adjustment.hand_measured import covariance_of_sigmas, hand_measured, ran_off
+from linepose.adjustment.hand_measured import hand_measured, ran_off
 from linepose.adjustment.motion import line_period_s
+from linepose.adjustment.settings import covariance_of_sigmas
 from linepose.errors import EstimationError, InputError
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import least_squares
 
 from linepose.adjustment.estimate import unit_weights
-from linepose.adjustment.hand_measured import covariance_of_sigmas, hand_measured
+from linepose.adjustment.hand_measured import hand_measured
 from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import empty_linearised, linearise
@@ -15,6 +15,7 @@ from linepose.adjustment.measurements import measurements_from_survey
 from linepose.adjustment.normal import solve_step, trailing_inverse, whitened_residual
 from linepose.adjustment.process import Weights, corrections
 from linepose.adjustment.residuals import normalised_residuals
+from linepose.adjustment.settings import covariance_of_sigmas
 from linepose.adjustment.solve import model_at, pass_at, solve
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at

@@ -7,11 +7,12 @@ import pytest
 
 from linepose.adjustment.curvature import curvature
 from linepose.adjustment.estimate import unit_weights
-from linepose.adjustment.hand_measured import covariance_of_sigmas, hand_measured
+from linepose.adjustment.hand_measured import hand_measured
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import empty_linearised, linearise
 from linepose.adjustment.measurements import measurements_from_survey
 from linepose.adjustment.normal import trailing_inverse
+from linepose.adjustment.settings import covariance_of_sigmas
 from linepose.adjustment.solve import solve
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at

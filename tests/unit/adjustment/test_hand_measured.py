@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from linepose.adjustment.hand_measured import covariance_of_sigmas, hand_measured
+from linepose.adjustment.hand_measured import hand_measured
+from linepose.adjustment.settings import covariance_of_sigmas
 from linepose.geometry import rotations
 
 ANGLES_RAD = [0.0, 1e-9, 1e-5, 1e-3, 0.1, 1.0, 2.0, 3.0, np.pi - 1e-7]

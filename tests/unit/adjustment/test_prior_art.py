@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from linepose.adjustment.estimate import unit_weights
-from linepose.adjustment.hand_measured import covariance_of_sigmas, hand_measured
+from linepose.adjustment.hand_measured import hand_measured
 from linepose.adjustment.measurements import measurements_from_survey
+from linepose.adjustment.settings import covariance_of_sigmas
 from linepose.adjustment.solve import solve
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at

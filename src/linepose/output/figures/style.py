@@ -7,6 +7,7 @@ from typing import Any, Final, ParamSpec
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
@@ -104,4 +105,5 @@ def save(figure: Figure, stem: Path) -> None:
             figure.savefig(path, metadata={"Software": None})
         figure.set_layout_engine("none")  # it is laid out; text is as large in both
         with atomic_write(stem.with_suffix(".pdf")) as path:
-            figure.savefig(path, metadata=undated)
+            canvas: Any = FigureCanvasPdf(figure)
+            canvas.print_pdf(path, metadata=undated)  # savefig would go through the figure twice
