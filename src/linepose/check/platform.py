@@ -23,6 +23,7 @@ from linepose.check.motion import motion_findings
 from linepose.check.points import point_findings
 from linepose.check.prediction import predict
 from linepose.check.scans import scan_findings
+from linepose.check.target import target_findings
 from linepose.check.told import readers_warnings
 from linepose.check.views import view_findings
 from linepose.config.platform import Platform, load_platform, platform_faults
@@ -141,6 +142,7 @@ def recorded_findings(project: Project, platform: str, root: Path) -> tuple[list
         more, points = view_findings(source, folder, n_pixels)
     else:
         more, points = scan_findings(source, folder, n_pixels)
+        more = [*more, *target_findings(settings.target, settings.intrinsics(), source)]
     findings += more
     if points is not None:
         removes = noise_model(settings.noise_model).removes_outliers

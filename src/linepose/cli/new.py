@@ -3,11 +3,14 @@
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from linepose.cli.options import HERE
+
+if TYPE_CHECKING:
+    from linepose.survey.targets.base import TargetSection
 
 _SOURCES = ("labelled_views", "scans")
 
@@ -56,6 +59,14 @@ def new(
         Path | None,
         typer.Option(metavar="FILE", help="A navigation log to look into: its format and preset are taken from it."),
     ] = None,
+    target: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE|KIND",
+            help="What the scans show: a file with `target:`, as `linepose target` writes it, or a kind.",
+            show_default="the paper's board",
+        ),
+    ] = None,
     description: Annotated[str | None, typer.Option(help="One line for people.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a platform file of this name.")] = False,
     project: Annotated[
@@ -71,6 +82,8 @@ def new(
     from linepose.config.platform import load_platform
 
     check_name(name)
+    shown = None if target is None else _shown(target, source)
+    source = source if shown is None else "scans"
     navigation_keys: dict[str, Any] = {}
     if navigation_file is not None:
         source = source or "scans"
@@ -121,6 +134,7 @@ def new(
             navigation_format=navigation_format or "",
             navigation=navigation or "",
             navigation_keys=navigation_keys,
+            target=shown,
         ),
         force,
     )
@@ -129,6 +143,21 @@ def new(
     files = ", ".join(files_of_source(load_platform(platforms, name).source))
     typer.echo(f"next: put {files} into {root / 'data' / (dataset or name)}; {path.name} says what each must hold")
     typer.echo(f"then: linepose check {name}")
+
+
+def _shown(target: str, source: str | None) -> "TargetSection":
+    """The target of a file, or of a kind as it is by default."""
+    from linepose.config.target_file import read_target
+    from linepose.errors import InputError
+    from linepose.survey.targets.registry import KINDS
+
+    if source == "labelled_views":
+        raise InputError("--target", "with --source labelled_views", "--source scans", "leave one of them out")
+    if target in KINDS:
+        return KINDS[target](kind=target)
+    if not Path(target).suffix:
+        raise InputError("--target", repr(target), f"a file, or one of {', '.join(KINDS)}", "correct it")
+    return read_target(Path(target))
 
 
 def _recognised(path: Path, chosen: str | None) -> tuple[str, dict[str, Any]]:

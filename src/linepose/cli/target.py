@@ -60,8 +60,9 @@ def target(
 
     The default is the paper's board of 3 x 5 rings on A1.
     """
+    from linepose.config.target_file import target_text
     from linepose.output.printing.paper import paper_of
-    from linepose.output.printing.write import target_text, write_pdf
+    from linepose.output.printing.write import write_pdf
     from linepose.tables import atomic_write
 
     if range_m is not None or pixel_mrad is not None:

@@ -9,6 +9,7 @@ import yaml
 
 from linepose.config.names import check_name
 from linepose.config.platform import NavigationSection, Platform
+from linepose.config.target_file import target_text
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT
 from linepose.geometry.camera import Camera, CameraSigmas
@@ -17,6 +18,7 @@ from linepose.inputs.navigation.registry import FORMATS
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, validated
 from linepose.survey.hand_measured import HandMeasured
+from linepose.survey.targets.base import TargetSection
 from linepose.tables import atomic_write
 
 Triple = tuple[float, float, float]
@@ -27,7 +29,7 @@ class NewPlatform:
     """What a person knows of a new platform; units in the names, as in the platform file.
 
     `navigation` is a file (CSV, Parquet) or, with `navigation_format`, a log in that format; for scans only.
-    `navigation_keys` are what is known of the log's own keys.
+    `navigation_keys` are what is known of the log's own keys. `target` is what the scans show.
     """
 
     name: str
@@ -45,6 +47,7 @@ class NewPlatform:
     navigation_format: str = ""
     navigation: str = ""
     navigation_keys: Mapping[str, Any] = field(default_factory=dict)
+    target: TargetSection | None = None
 
 
 def platform_text(new: NewPlatform) -> str:
@@ -62,6 +65,7 @@ def platform_text(new: NewPlatform) -> str:
             "",
             *_source(new),
             "",
+            *_target(new),
             *_experiments(),
             "",
         ]
@@ -164,8 +168,7 @@ def _source(new: NewPlatform) -> list[str]:
         ]
     lines += [
         "  scans: scans/*.hdr # one a view, sorted by name: ENVI (.hdr), .png, .tif, with NAME-times.csv",
-        "  points: labels # or detection: dots found without labels; or matching: tie points where strips overlap",
-        "  labels: labels.csv # observation, point, u_px, line: make it with linepose label",
+        *_points(new),
     ]
     if not new.navigation_format:
         log = new.navigation or "navigation.csv"
@@ -185,6 +188,28 @@ def _source(new: NewPlatform) -> list[str]:
         of_log = "; not needed where the log holds sigmas" if new.navigation_format else ""
         lines.append(f"  covariances: covariances.csv # rows of time (us) and the row-major 12x12 covariance{of_log}")
     return lines
+
+
+def _points(new: NewPlatform) -> list[str]:
+    labels = "labels.csv # observation, point, u_px, line: make it with linepose label"
+    if new.target is None:
+        told = "or detection: dots found without labels; or matching: tie points where strips overlap"
+        return [f"  points: labels # {told}", f"  labels: {labels}"]
+    if new.target.artwork() is None:
+        return [
+            "  points: labels",
+            f"  labels: {labels}",
+            "  refinement: none # places are taken as they were labelled",
+        ]
+    return [
+        "  points: detection # or labels: by hand, with linepose label",
+        f"  # labels: {labels}",
+        "  # target_range_m: 3.0 # from the camera to the target (m), for one that is not found at once",
+    ]
+
+
+def _target(new: NewPlatform) -> list[str]:
+    return [] if new.target is None else [*target_text(new.target).splitlines(), ""]
 
 
 def _has_covariances(new: NewPlatform) -> bool:

@@ -152,6 +152,13 @@ class Platform(Settings):
             raise ValueError(f"noise_model adjustment with points: {self.noise_model} has no use for them")
         return self
 
+    @model_validator(mode="after")
+    def _can_be_detected(self) -> "Platform":
+        detected = isinstance(self.source, ScansSection) and self.source.points == "detection"
+        if detected and self.target.artwork() is None:
+            raise ValueError(f"source.points: labels with target.kind {self.target.kind}, which has no pattern to find")
+        return self
+
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""
         return self.camera

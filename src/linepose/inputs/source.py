@@ -81,6 +81,11 @@ class ScansSection(Settings):
     matching: MatchingSection = Field(
         MatchingSection(), description="How tie points are matched, for `points: matching`."
     )
+    target_range_m: PositiveFloat | None = Field(
+        None,
+        description="From the camera to the target (m), to a quarter or so: where a chessboard, dots or markers are "
+        "sought in rectified scans; if not given, several distances are tried.",
+    )
     labels: Files = Field(
         "labels.csv",
         description="Labels: CSV (observation, point, u_px, line), CVAT for images 1.1 (.xml), LabelMe (a pattern "

@@ -1,6 +1,7 @@
 """What a platform recorded, whatever wrote it: from its files to the table of observations."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
@@ -19,6 +20,9 @@ from linepose.survey.navigation import NavigationCovariances, associate_covarian
 from linepose.survey.navigation_log import POSE_AT, NavigationLog, associate_poses
 from linepose.survey.observations import check_determined, survey_from_table
 
+if TYPE_CHECKING:
+    from linepose.inputs.targets.rectified import HandView
+
 
 def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
     """Points of all observations in a data set's folder.
@@ -35,9 +39,17 @@ def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
     scans, refine = select_scans(folder, source.scans, source.left_out), REFINEMENTS[source.refinement]
     line_times = line_times_of(source)
     if source.points == "detection":
-        return detected_points(scans, detector_of(platform.target, refine), n_pixels, line_times)
+        detector = detector_of(platform.target, source.refinement, lambda: _hand_view(platform, source, folder))
+        return detected_points(scans, detector, n_pixels, line_times)
     labels = read_point_labels(folder, source.labels, scans, n_pixels, source.point_id)
     return refined_points(scans, labels, refine, n_pixels, line_times)
+
+
+def _hand_view(platform: Platform, source: ScansSection, folder: Path) -> "HandView":
+    from linepose.inputs.targets.rectified import HandView
+
+    log = read_navigation(source, folder).log
+    return HandView(platform.intrinsics(), platform.start_pose(), log, source.target_range_m)
 
 
 def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> pd.DataFrame:

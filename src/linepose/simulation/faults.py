@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from linepose.arrays import Floats
+from linepose.simulation.board import points_on_board
 from linepose.simulation.settings import SimulationSettings
 from linepose.simulation.trajectory import schedule
-from linepose.survey.pattern import N_POINTS
 
 
 def clock_offsets_s(settings: SimulationSettings) -> Floats:
@@ -19,7 +19,7 @@ def clock_offsets_s(settings: SimulationSettings) -> Floats:
 
 def missing(settings: SimulationSettings) -> NDArray[np.bool_]:
     """Which points are covered, by their true id; (N, M)."""
-    mask = np.zeros((len(settings.passes), N_POINTS), dtype=bool)
+    mask = np.zeros((len(settings.passes), len(points_on_board(settings.board))), dtype=bool)
     for fault in settings.faults:
         mask[fault.observation - 1, list(fault.missing_points)] = True
     return mask
@@ -27,7 +27,7 @@ def missing(settings: SimulationSettings) -> NDArray[np.bool_]:
 
 def id_of_label(settings: SimulationSettings) -> NDArray[np.int64]:
     """The true id of the point that each label names; (N, M), its own but for swapped points."""
-    ids = np.tile(np.arange(N_POINTS), (len(settings.passes), 1))
+    ids = np.tile(np.arange(len(points_on_board(settings.board))), (len(settings.passes), 1))
     for fault in settings.faults:
         for first, second in fault.swapped_points:
             ids[fault.observation - 1, [first, second]] = ids[fault.observation - 1, [second, first]]

@@ -17,6 +17,7 @@ from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera, undistort
 from linepose.simulation import scene
+from linepose.simulation.board import PRINT_CELL_M, print_of
 from linepose.simulation.faults import missing
 from linepose.simulation.projection import exact_projections
 from linepose.simulation.settings import SimulationSettings
@@ -68,6 +69,7 @@ def render(camera: Camera, settings: SimulationSettings, observation: int) -> Ex
         _sampled_x(camera, sampled_u),
         sampled_v,
         missing(settings)[observation - 1],
+        print_of(settings.board),
         np.array([image.dark_reflectance, image.bright_reflectance]),
         np.array([image.ground_reflectance, image.ground_contrast, image.ground_grain_m]),
         image.backdrop_distance_m,
@@ -111,6 +113,7 @@ def _collected_light(
     sampled_x: Floats,
     sampled_v: Floats,
     missing_points: NDArray[np.bool_],
+    white: NDArray[np.bool_],
     sheet: Floats,
     ground: Floats,
     backdrop_m: float,
@@ -131,7 +134,7 @@ def _collected_light(
                     dx = m[0, 0] * x + m[0, 1] * v + m[0, 2]
                     dy = m[1, 0] * x + m[1, 1] * v + m[1, 2]
                     dz = m[2, 0] * x + m[2, 1] * v + m[2, 2]
-                    total += _seen(c, dx, dy, dz, missing_points, sheet, ground, backdrop_m, gradient, seed)
+                    total += _seen(c, dx, dy, dz, missing_points, white, sheet, ground, backdrop_m, gradient, seed)
             light[line, pixel] = total / (n_moments * n_samples)
     return light
 
@@ -143,6 +146,7 @@ def _seen(
     dy: float,
     dz: float,
     missing_points: NDArray[np.bool_],
+    white: NDArray[np.bool_],
     sheet: Floats,
     ground: Floats,
     backdrop_m: float,
@@ -154,7 +158,16 @@ def _seen(
         return ground[0]
     depth = -centre[2] / dz
     x, y = centre[0] + depth * dx, centre[1] + depth * dy
-    if depth > 0.0 and scene.on_sheet(x, y):
+    if len(white):
+        row = int(np.floor(y / PRINT_CELL_M + 0.5 * white.shape[0]))
+        column = int(np.floor(x / PRINT_CELL_M + 0.5 * white.shape[1]))
+        is_seen = depth > 0.0 and 0 <= row < white.shape[0] and 0 <= column < white.shape[1]
+    else:
+        row = column = 0
+        is_seen = depth > 0.0 and scene.on_sheet(x, y)
+    if is_seen and len(white):
+        reflectance = sheet[1] if white[row, column] else sheet[0]
+    elif is_seen:
         if scene.covered(x, y, missing_points):
             reflectance = scene.ground_reflectance(x, y, ground[0], ground[1], ground[2], seed)
         else:

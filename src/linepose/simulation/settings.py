@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from linepose.errors import InputError
+from linepose.survey.targets.registry import Target
 
 Triple = tuple[float, float, float]
 Sextuple = tuple[float, float, float, float, float, float]
@@ -24,11 +25,15 @@ _DEGREES = re.compile("_deg(?=_s$|$)")
 
 @dataclass(frozen=True)
 class BoardSettings:
-    """Pose of the pattern in the world: its centre, and board to world (board x along the rows of five, z away)."""
+    """Pose of the pattern in the world: its centre, and board to world (board x along the rows, z away).
+
+    `target` is what stands there, described as in a platform's file; none is the paper's board.
+    """
 
     __pydantic_config__: ClassVar[ConfigDict] = _CLOSED
     position_m: Triple
     euler_rad: Triple
+    target: Target | None = None
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from linepose.cli import workflow_files
 from linepose.cli.app import app
 from linepose.cli.check import _without_warnings
 from linepose.config.platform import load_platform
+from linepose.errors import InputError
 from unit import made_up
 from unit.recorded_files import write_platform_files
 
@@ -211,6 +212,23 @@ def test_new_adds_to_a_project_that_is_there(here):
     assert len(after) == len(before) + 1
     given("new", "second", *GIVEN, "--force")
     assert config.read_text().splitlines() == after
+
+
+def test_new_takes_a_target_as_it_was_printed_or_a_kind(here, platforms_folder):
+    assert given("target", "--kind", "charuco", "--rows", "5", "--paper", "A0", "--output", "board.pdf").exit_code == 0
+    assert given("new", "mine", *GIVEN, "--target", "board.yaml").exit_code == 0
+    mine = load_platform(here / "config" / "platforms", "mine")
+    assert (mine.target.kind, mine.target.rows, mine.source.points) == ("charuco", 5, "detection")
+    assert given("new", "stones", *GIVEN, "--target", "points").exit_code == 0
+    stones = load_platform(here / "config" / "platforms", "stones")
+    assert (stones.target.kind, stones.source.points, stones.source.refinement) == ("points", "labels", "none")
+    assert "found 'charucoo', expected a file, or one of rings" in one_line(
+        given("new", "other", *GIVEN, "--target", "charucoo")
+    )
+    file = here / "config" / "platforms" / "stones.yaml"
+    file.write_text(file.read_text().replace("points: labels", "points: detection"))
+    with pytest.raises(InputError, match=r"source\.points: labels with target\.kind points"):
+        load_platform(file.parent, "stones")
 
 
 @pytest.mark.parametrize("name", ["a/b", "", "two words"])

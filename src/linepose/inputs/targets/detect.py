@@ -31,13 +31,17 @@ _FARTHEST_DOT: Final = 0.32  # hole radii from where the map expects it
 
 @dataclass(frozen=True)
 class Detection:
-    """Points found in one scan: ids (n,), u (n,) and fractional lines (n,); `doubt` says why there are none, or ""."""
+    """Points found in one scan: ids (n,), u (n,) and fractional lines (n,).
+
+    `doubt` says why there are none, or "", and `remedy` what helps, where it is known.
+    """
 
     point: NDArray[np.int64]
     u_px: Floats
     line: Floats
     doubt: str = ""
     board_found: bool = True
+    remedy: str = ""
 
     @property
     def position(self) -> Floats:

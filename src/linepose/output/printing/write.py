@@ -1,16 +1,14 @@
-"""A target as a PDF file, and its description beside it."""
+"""A target as a PDF file."""
 
 from pathlib import Path
 from typing import Final
-
-import yaml
 
 from linepose.errors import InputError
 from linepose.output.printing.board import sheet, tiled
 from linepose.output.printing.fit import check_fits
 from linepose.output.printing.notes import notes
 from linepose.output.printing.paper import Paper
-from linepose.survey.targets.base import GridSection, TargetSection
+from linepose.survey.targets.base import GridSection
 from linepose.tables import atomic_write
 
 _MOST_SHEETS: Final = 400
@@ -48,13 +46,3 @@ def write_pdf(target: GridSection, path: Path, paper: Paper | None, tile: Paper 
         for page in [*pages, notes(target, artwork, tile is not None)]:
             pdf.savefig(page)
     return len(pages)
-
-
-def target_text(target: TargetSection) -> str:
-    """The `target` section of a platform's file, each key commented with its meaning."""
-    fields = type(target).model_fields
-    lines = ["target:"]
-    for name, value in target.model_dump(mode="json").items():
-        text = yaml.safe_dump(value, default_flow_style=True, width=10_000).removesuffix("\n").removesuffix("...")
-        lines.append(f"  {name}: {text.strip()} # {(fields[name].description or '').rstrip('.')}")
-    return "\n".join(lines) + "\n"
