@@ -69,7 +69,7 @@ FURTHER_PAGES = {}  # that the report links to: title and address
 
 
 wildcard_constraints:
-    platform="[A-Za-z0-9_-]+",
+    platform="[A-Za-z0-9_.-]+",
 
 
 def names_of(platforms):

@@ -24,8 +24,6 @@ _NAMED_OFFSETS_S: Final = (
 )
 
 _REMEDIES: Final = {  # of shifts of the camera's clock (s)
-    -18: ", where its stamps count GPS time: source.time_scale: gps",
-    18: ", where its stamps count UTC: source.time_scale: unix",
     -619_315_200: ", the navigation's: add 619315200 s to its times, or correct its gps_week",
     619_315_200: ", the camera's: add 619315200 s to its times",
 }
@@ -33,8 +31,11 @@ _HEADER_TOLERANCE_S: Final = 5.0  # headers say whole seconds, and a recorder st
 _WHOLE_TOLERANCE_S: Final = 2.0
 
 
-def overlap_findings(time_us: Times, navigation_us: Times, what: str) -> list[Finding]:
-    """Whether times of points (P,) lie within those of the navigation (K,), increasing; `what` names the latter."""
+def overlap_findings(time_us: Times, navigation_us: Times, what: str, offset_s: float | None = None) -> list[Finding]:
+    """Whether times of points (P,) lie within those of the navigation (K,), increasing; `what` names the latter.
+
+    `offset_s` is source.time_offset_s, None where the source has no such key.
+    """
     start, end = navigation_us[0], navigation_us[-1]
     outside = (time_us < start) | (time_us > end)
     if not outside.any():
@@ -51,19 +52,29 @@ def overlap_findings(time_us: Times, navigation_us: Times, what: str) -> list[Fi
     earliest, latest = (start - time_us.min()) / 1e6, (end - time_us.max()) / 1e6
     found = f"no point lies within the {what}: points from {_told(time_us.min())}, {what} from {_told(start)}"
     names = [
-        f"{sign * seconds:+d} s: {name}{_REMEDIES.get(sign * seconds, '')}"
+        f"{_moved(sign * seconds, offset_s)} ({name}{_REMEDIES.get(sign * seconds, '')})"
         for seconds, name in _NAMED_OFFSETS_S
         for sign in (1, -1)
         if earliest <= sign * seconds <= latest
     ]
     if names:
-        return [error(_SUBJECT, found, f"correct the camera's clock; these shifts fit: {'; '.join(names[:3])}")]
+        return [error(_SUBJECT, found, "; or ".join(names[:3]))]
     advice = f"correct the camera's clock by {earliest:.1f} to {latest:.1f} s, or bring the log of that day"
     return [error(_SUBJECT, found, advice if earliest <= latest else "bring the log that covers the whole survey")]
 
 
-def header_findings(first_us: Mapping[str, int], header_us: Mapping[str, int]) -> list[Finding]:
-    """Whether scans' headers say the time of the first line that their time stamps say; both are by the scan's name."""
+def _moved(shift_s: int, offset_s: float | None) -> str:
+    """What moves the camera's clock by a shift, as an imperative."""
+    if offset_s is None:
+        return f"add {shift_s * 1_000_000} us to column 1 of each view file"
+    return f"set source.time_offset_s: {offset_s + shift_s:.10g}"
+
+
+def header_findings(first_us: Mapping[str, int], header_us: Mapping[str, int], offset_s: float = 0.0) -> list[Finding]:
+    """Whether scans' headers say the time of the first line that their time stamps say; both are by the scan's name.
+
+    `offset_s` is source.time_offset_s.
+    """
     late_s = {name: (first_us[name] - header_us[name]) / 1e6 for name in header_us if name in first_us}
     apart = [name for name, late in late_s.items() if abs(late) > _HEADER_TOLERANCE_S]
     if not apart:
@@ -72,13 +83,22 @@ def header_findings(first_us: Mapping[str, int], header_us: Mapping[str, int]) -
     names = [
         f"{name}{_REMEDIES.get(round(np.sign(-late)) * seconds, '')}"
         for seconds, name in _NAMED_OFFSETS_S
-        if abs(abs(late) - seconds) < _WHOLE_TOLERANCE_S
+        if _is_whole(abs(late), seconds)
     ]
     alike = f" (and {len(apart) - 1} more scans)" if len(apart) > 1 else ""
     found = f"{apart[0]}: its time stamps begin {abs(late):.3f} s {'after' if late > 0 else 'before'} the time in its "
     found += f"header, read as UTC{alike}" + (f": {names[0]}" if names else "")
-    advice = "find out which of the two is right by a landmark, and correct the time stamps if it is the header"
+    right_s = next(
+        (sign * seconds for seconds, _ in _NAMED_OFFSETS_S for sign in (1, -1) if _is_whole(late, sign * seconds)), late
+    )
+    advice = "find out which of the two is right by a landmark; if it is the header, "
+    advice += f"set source.time_offset_s: {offset_s - right_s:.13g}"
     return [warning(_SUBJECT, found, advice)]
+
+
+def _is_whole(late_s: float, seconds: int) -> bool:
+    """Whether a lateness is that of a named offset, which headers and recorders round."""
+    return abs(late_s - seconds) < _WHOLE_TOLERANCE_S
 
 
 def gap_findings(time_us: Times, navigation_us: Times, maximum_s: float, what: str, key: str) -> list[Finding]:

@@ -12,6 +12,10 @@ _SHORTEST_M: Final = 0.1  # of a view's way, below which it says nothing of the 
 _FASTEST_M_S: Final = 15.0
 _OFF_DEG: Final = 20.0
 _SUBJECT: Final = "body pose"
+OFF_HEADING: Final = (
+    "unless it drives sideways: yaw counts from north to the east, in radians; check that positions are north, east, "
+    "down and angles roll, pitch, yaw (not east, north, up)"
+)
 
 
 def motion_findings(survey: Survey) -> list[Finding]:
@@ -30,14 +34,7 @@ def motion_findings(survey: Survey) -> list[Finding]:
     if moved.sum() >= 2:
         off_deg = off_heading_deg(way[moved], yaw[moved])
         if abs(off_deg) > _OFF_DEG:
-            findings.append(
-                warning(
-                    _SUBJECT,
-                    f"the body moves {off_deg:.0f} deg off its heading",
-                    "unless it drives sideways: yaw counts from north to the east, in radians; check that positions "
-                    "are north, east, down and angles roll, pitch, yaw (not east, north, up)",
-                )
-            )
+            findings.append(warning(_SUBJECT, f"the body moves {off_deg:.0f} deg off its heading", OFF_HEADING))
         else:
             findings.append(ok(_SUBJECT, f"the body moves the way it points, within {abs(off_deg):.1f} deg"))
     return findings

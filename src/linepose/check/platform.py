@@ -12,9 +12,8 @@ import pandas as pd
 from linepose.adjustment.known_points import KnownPoints
 from linepose.check import clock, covariances
 from linepose.check.camera import camera_findings
-from linepose.check.conventions.examine import HandSigmas, RecordingAt
-from linepose.check.conventions.findings import convention_findings
-from linepose.check.conventions.recording import Recording
+from linepose.check.conventions.examine import HandSigmas
+from linepose.check.conventions.findings import agreed, convention_findings
 from linepose.check.exchanges import exchange_findings
 from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, error, of_fault, ok
 from linepose.check.hand_measured import hand_findings
@@ -22,6 +21,7 @@ from linepose.check.labels import count_findings, position_findings
 from linepose.check.motion import motion_findings
 from linepose.check.points import point_findings
 from linepose.check.prediction import predict
+from linepose.check.recorder import Recorder
 from linepose.check.scans import scan_findings
 from linepose.check.target import target_findings
 from linepose.check.told import readers_warnings
@@ -95,7 +95,7 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
     except InputError as fault:
         return CheckReport(platform, (*findings, of_fault("data set", fault)))
     with readers_warnings() as told:
-        more, observations = recorded_findings(loaded, platform, root)
+        more, points, observations = recorded_findings(loaded, platform, root)
     findings += [*more, *told]
     if observations is None or any(finding.level == Level.ERROR for finding in findings):
         return CheckReport(platform, tuple(findings))
@@ -103,7 +103,7 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
     findings += more
     if any(finding.level == Level.ERROR for finding in more):
         return CheckReport(platform, tuple(findings))
-    recorder = _recorder(loaded, platform, root, observations)
+    recorder = Recorder(settings, root / loaded.folder(platform), points, observations)
     more, sigmas = geometry_findings(settings, observations, recorder, known)
     return CheckReport(platform, (*findings, *more), sigmas)
 
@@ -123,19 +123,21 @@ def configuration_findings(platform: str, root: Path) -> list[Finding]:
     return [ok("platform file", f"{study.platforms_folder}/{platform}.yaml has every key it needs")]
 
 
-def recorded_findings(project: Project, platform: str, root: Path) -> tuple[list[Finding], pd.DataFrame | None]:
-    """Findings on what the platform recorded, and its table of observations where that can be used."""
+def recorded_findings(
+    project: Project, platform: str, root: Path
+) -> tuple[list[Finding], pd.DataFrame | None, pd.DataFrame | None]:
+    """Findings on what the platform recorded, its points as they are read, and its observations where usable."""
     settings = project.platforms[platform]
     folder = root / project.folder(platform)
     if settings.source.dataset is None and not folder.is_dir():
-        return _simulated(settings)
+        findings, observations = _simulated(settings)
+        return findings, None, observations
     if not folder.is_dir():
         found = f"{folder}: no such folder"
         if settings.source.dataset in project.datasets:
-            return [
-                error("data set", found, f"it is downloaded by `linepose run {platform}`; check again after it")
-            ], None
-        return [error("data set", found, "put the platform's files there, or correct source.dataset")], None
+            advice = f"it is downloaded by `linepose run {platform}`; check again after it"
+            return [error("data set", found, advice)], None, None
+        return [error("data set", found, "put the platform's files there, or correct source.dataset")], None, None
     findings, points = [*_sum_findings(project, platform, folder)], None
     n_pixels, source = settings.camera.n_pixels, settings.source
     if isinstance(source, LabelledViewsSection):
@@ -150,19 +152,19 @@ def recorded_findings(project: Project, platform: str, root: Path) -> tuple[list
     more, recorded = _navigation_findings(settings, folder, points)
     findings += more
     if any(finding.level == Level.ERROR for finding in findings) or recorded.points is None:
-        return findings, None
+        return findings, points, None
     try:
         observations = with_navigation(recorded.points, settings, folder)
         check_determined(survey_from_table(observations), settings.n_unknown)
     except InputError as fault:
-        return [*findings, of_fault("observations", fault)], None
-    return findings, observations
+        return [*findings, of_fault("observations", fault)], points, None
+    return findings, points, observations
 
 
 def geometry_findings(
     settings: Platform,
     observations: pd.DataFrame,
-    recording_at: RecordingAt,
+    recorder: Recorder,
     known_points: KnownPoints | None = None,
 ) -> tuple[list[Finding], tuple[PredictedSigma, ...]]:
     """Findings on motion, hand-measured pose, conventions and predicted sigmas, of a usable table of observations."""
@@ -174,34 +176,14 @@ def geometry_findings(
     except LineposeError as fault:
         return [*findings, error("hand measurement", str(fault), "check hand_measured and the navigation's axes")], ()
     hand = settings.hand_measured
-    more += convention_findings(
-        recording_at, HandSigmas(hand.sigma_position_m, float(np.radians(hand.sigma_rotation_deg)))
-    )
-    findings += more
-    if any(finding.level == Level.ERROR for finding in more):
+    near = HandSigmas(hand.sigma_position_m, float(np.radians(hand.sigma_rotation_deg)))
+    findings = agreed([*findings, *more], convention_findings(settings, recorder.at, recorder.of, near))
+    if any(finding.level == Level.ERROR for finding in findings):
         return findings, ()
     prediction = predict(survey, camera, hand, settings.pose_prior() is not None, point_m, known_points)
     if prediction.adjusted is not None:
         findings += exchange_findings(survey, camera, prediction.adjusted)
     return [*findings, *prediction.findings], prediction.sigmas
-
-
-def _recorder(project: Project, platform: str, root: Path, observations: pd.DataFrame) -> RecordingAt:
-    """What the convention doctor looks at: the observations, read again where it moves the camera's clock."""
-    settings, folder = project.platforms[platform], root / project.folder(platform)
-
-    @cache  # tens of hypotheses look at the same few clocks
-    def recording_at(shift_s: float) -> Recording:
-        table = observations
-        if shift_s:
-            if not _has_log(settings) or not folder.is_dir():
-                raise InputError(platform, "no navigation log", "one in which the clock can be moved", "go on without")
-            shift_us = round(shift_s * 1e6)
-            points = observations[["observation", "point", "time_us", "u_px"]]
-            table = with_navigation(points.assign(time_us=points["time_us"] + shift_us), settings, folder)
-        return Recording(survey_from_table(table), settings.intrinsics(), settings.start_pose())
-
-    return recording_at
 
 
 def _sum_findings(project: Project, platform: str, folder: Path) -> list[Finding]:
@@ -237,11 +219,12 @@ def _navigation_findings(
         findings += clock.rate_findings(log.time_us, navigation.maximum_pose_gap_s)
     if points is not None:
         time_us = points["time_us"].to_numpy()
+        offset_s = settings.source.time_offset_s if isinstance(settings.source, ScansSection) else None
         if log is not None:
-            findings += clock.overlap_findings(time_us, log.time_us, "navigation log")
+            findings += clock.overlap_findings(time_us, log.time_us, "navigation log", offset_s)
         if reported is not None:
             about = "covariance", "navigation.maximum_gap_s"
-            within = clock.overlap_findings(time_us, reported.time_us, "covariances")
+            within = clock.overlap_findings(time_us, reported.time_us, "covariances", offset_s)
             gaps = clock.gap_findings(time_us, reported.time_us, navigation.maximum_gap_s, *about)
             findings += within if within[0].level == Level.ERROR and gaps[0].level == Level.ERROR else gaps
     return findings, Recorded(points, log, reported)

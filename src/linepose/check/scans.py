@@ -42,7 +42,9 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
         found = f"scan {numbers(other)}: {widths[other[0]]} pixels a line, camera.n_pixels is {n_pixels}"
         findings.append(error("scans", found, f"set camera.n_pixels: {widths[other[0]]}, or restore the scans"))
     findings += header_findings(
-        {scans[number].name: int(stamps[0]) for number, stamps in times.items()}, _header_starts(scans.values())
+        {scans[number].name: int(stamps[0]) for number, stamps in times.items()},
+        _header_starts(scans.values()),
+        source.time_offset_s,
     )
     if not any(finding.level == Level.ERROR for finding in findings):
         findings.append(ok("scans", f"{len(scans)} scans of {n_pixels} pixels, a time stamp for each line"))

@@ -32,6 +32,8 @@ from linepose.settings import Settings, faults_of, validated
 from linepose.simulation.flight_section import FlightSection
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
 from linepose.survey.hand_measured import HandMeasured
+from linepose.survey.navigation_corrections import MEANINGS as MEANINGS_OF_CORRECTIONS
+from linepose.survey.navigation_corrections import CorrectionName
 from linepose.survey.targets.registry import Target
 from linepose.survey.targets.rings import RingsSection
 
@@ -58,6 +60,11 @@ class NavigationSection(Settings):
         "nearest",
         description="Pose of a point from a raw log: of the nearest time stamp, as in the paper, or interpolated; "
         "for scans only.",
+    )
+    corrections: tuple[CorrectionName, ...] = Field(
+        (),
+        description="What the log has otherwise than [conventions.md](conventions.md) says and no key of its format "
+        f"tells, undone in this order after reading; `linepose check` names it. {MEANINGS_OF_CORRECTIONS}.",
     )
 
     @field_validator("covariance_columns")

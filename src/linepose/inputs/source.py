@@ -72,6 +72,14 @@ class ScansSection(Settings):
         description="Clock of the time stamps: Unix time, or since 1980-01-06 with leap seconds counted; if not given, "
         "gps for resonon and unix for the others.",
     )
+    time_offset_s: float = Field(
+        0.0,
+        ge=-1e10,
+        le=1e10,
+        allow_inf_nan=False,
+        description="Seconds that are added to the time stamps of the scans, where their clock differs from that of "
+        "the navigation.",
+    )
     left_out: tuple[PositiveInt, ...] = Field((), description="Numbers of observations that are not used.")
     points: Literal["labels", "detection", "matching"] = Field(
         "labels",

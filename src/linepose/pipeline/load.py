@@ -8,7 +8,7 @@ import pandas as pd
 from linepose.config.platform import Platform
 from linepose.inputs.labels import read_point_labels
 from linepose.inputs.labels.labelled_views import read_labelled_views, select_views
-from linepose.inputs.navigation import log_covariances, read_navigation
+from linepose.inputs.navigation import NavigationRecord, log_covariances, read_navigation
 from linepose.inputs.navigation.covariance_file import read_covariances
 from linepose.inputs.observed_points import detected_points, refined_points, select_scans
 from linepose.inputs.scans.line_times import line_times_of
@@ -16,6 +16,7 @@ from linepose.inputs.scans.scan_files import read_scan
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.inputs.targets.detectors import detector_of
 from linepose.inputs.targets.refine import REFINEMENTS
+from linepose.survey.corrected import corrected_covariances, corrected_points
 from linepose.survey.navigation import NavigationCovariances, associate_covariances
 from linepose.survey.navigation_log import POSE_AT, NavigationLog, associate_poses
 from linepose.survey.observations import check_determined, survey_from_table
@@ -59,10 +60,12 @@ def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> p
     """
     source, navigation = platform.source, platform.navigation
     if isinstance(source, ScansSection):
-        record, points = read_navigation(source, folder), points.drop(columns="line", errors="ignore")
+        record = read_navigation(source, folder, navigation.corrections)
+        points = points.drop(columns="line", errors="ignore")
         points = associate_poses(points, record.log, POSE_AT[navigation.association], navigation.maximum_pose_gap_s)
-        reported, place = log_covariances(record, source, navigation.covariance_columns, folder), folder / source.scans
+        reported, place = _log_covariances(platform, record, folder), folder / source.scans
     else:
+        points = corrected_points(points, navigation.corrections)
         reported, place = read_reported(platform, folder), folder / source.views
     observations = associate_covariances(points, reported, navigation.maximum_gap_s)
     check_determined(survey_from_table(observations), platform.n_unknown, str(place))
@@ -72,7 +75,7 @@ def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> p
 def read_log(platform: Platform, folder: Path) -> NavigationLog:
     """The raw navigation log of a platform with scans; raises InputError."""
     assert isinstance(platform.source, ScansSection)
-    return read_navigation(platform.source, folder).log
+    return read_navigation(platform.source, folder, platform.navigation.corrections).log
 
 
 def map_frame_table(platform: Platform, folder: Path) -> pd.DataFrame:
@@ -90,10 +93,18 @@ def map_frame_table(platform: Platform, folder: Path) -> pd.DataFrame:
 
 def read_reported(platform: Platform, folder: Path) -> NavigationCovariances:
     """The navigation covariances of a platform; raises InputError."""
-    source, columns = platform.source, platform.navigation.covariance_columns
+    source, settings = platform.source, platform.navigation
     if isinstance(source, ScansSection):
-        return log_covariances(read_navigation(source, folder), source, columns, folder)
-    return read_covariances(folder / source.covariances, columns)
+        return _log_covariances(platform, read_navigation(source, folder, settings.corrections), folder)
+    reported = read_covariances(folder / source.covariances, settings.covariance_columns)
+    return corrected_covariances(reported, settings.corrections)
+
+
+def _log_covariances(platform: Platform, record: NavigationRecord, folder: Path) -> NavigationCovariances:
+    """The covariances of a platform with scans, whose log was read."""
+    assert isinstance(platform.source, ScansSection)
+    settings = platform.navigation
+    return log_covariances(record, platform.source, settings.covariance_columns, folder, settings.corrections)
 
 
 def read_observations(platform: Platform, folder: Path) -> pd.DataFrame:

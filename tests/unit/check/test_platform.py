@@ -190,12 +190,12 @@ PLANTED = {
     gps_clock: (Level.ERROR, "time", "no point lies within", "time zone of 1 h"),
     cut_short: (Level.ERROR, "time", "of 180 points", "complete the navigation log"),
     other_columns: (Level.WARNING, "attitude columns", "columns 6-8", r"covariance_columns: \[6, 7, 8\]"),
-    behind: (Level.ERROR, "hand measurement", "behind the camera", "hand_measured"),
+    behind: (Level.ERROR, "hand measurement", "behind the camera", "first follow the advice on conventions"),
     far_off: (Level.WARNING, "hand measurement", "its sigmas explain", "zyx intrinsic"),
     millimetres: (Level.ERROR, "camera", "8.2 m", "metres"),
-    from_east: (Level.WARNING, "body pose", "off its heading", "east, north, up"),
-    roll_sign: (Level.ERROR, "conventions", "roll has the other sign", "right side goes down"),
-    flipped_line: (Level.ERROR, "conventions", "scan line is flipped|counted from the other end", "n_pixels - 1 - u|"),
+    from_east: (Level.WARNING, "body pose", "off its heading", "first follow the advice on conventions"),
+    roll_sign: (Level.ERROR, "conventions", "roll has the other sign", r"set navigation.corrections: \[roll_sign\]$"),
+    flipped_line: (Level.ERROR, "conventions", "scan line is flipped", r"set hand_measured.euler_deg: \["),
     no_covariances: (Level.ERROR, "covariances", "no such file", "restore it"),
     no_folder: (Level.ERROR, "data set", "no folder mine", "put them in"),
 }
@@ -216,6 +216,17 @@ def test_planted_mistake_is_named(project, plant):
     mine = [f for f in check_platform("mine", project).of(level) if f.subject == subject and re.search(found, f.found)]
     assert len(mine) == 1
     assert re.search(advice, mine[0].advice)
+
+
+def test_only_one_finding_advises_what_to_change(project):
+    """Yaw from east: the body moves off its heading and the points lie wrong, for one reason."""
+    from_east(project)
+    advice = [f.advice for f in check_platform("mine", project).findings if f.advice and f.subject != "covariances"]
+    assert [one for one in advice if not one.startswith("first follow")] == [
+        "set navigation.corrections: [yaw_mirrored]"
+    ]
+    change_platform(project, lambda p: p["navigation"].update(corrections=["yaw_mirrored"]))
+    assert check_platform("mine", project).of(Level.ERROR) == ()
 
 
 def test_clean_files_have_none_of_the_planted_findings(clean_report):

@@ -161,7 +161,7 @@ def test_what_readers_pass_over_is_told_once(scans):
     ("late_s", "found"),
     [
         (7_200, r"begin 7200.* s after the time in its header, .* \(and 9 more scans\): a time zone of 2 h"),
-        (18, r"begin 18.* s after .*: GPS time against UTC .* source.time_scale: gps"),
+        (18, r"begin 18.* s after .*: GPS time against UTC"),
         (-619_315_200, r"begin 619315200.* before .*: 1024 GPS weeks, .* the camera's: add 619315200 s"),
         (100, r"begin 100.* s after the time in its header, read as UTC \(and 9 more scans\)$"),
         (2, None),
@@ -176,18 +176,30 @@ def test_time_of_the_header_beside_the_stamps(scans, late_s, found):
     mine = [one for one in told if one.subject == "time"]
     assert len(mine) == (found is not None)
     assert found is None or re.search(found, mine[0].found)
+    assert found is None or float(re.search("source.time_offset_s: (.*)", mine[0].advice)[1]) == pytest.approx(-late_s)
 
 
 @pytest.mark.parametrize(
     ("shift_s", "advice"),
     [
-        (3_600, r"-3600 s: a time zone of 1 h"),
-        (18, r"-18 s: GPS time against UTC .*, where its stamps count GPS time: source.time_scale: gps"),
-        (619_315_200, r"-619315200 s: 1024 GPS weeks, .*, the navigation's: add 619315200 s to its times"),
-        (-619_315_200, r"\+619315200 s: 1024 GPS weeks, .*, the camera's: add"),
+        (3_600, r"set source.time_offset_s: -3600 \(a time zone of 1 h\)"),
+        (18, r"set source.time_offset_s: -18 \(GPS time against UTC .*\)"),
+        (619_315_200, r"-619315200 \(1024 GPS weeks, .*, the navigation's: add 619315200 s to its times\)"),
+        (-619_315_200, r": 619315200 \(1024 GPS weeks, .*, the camera's: add"),
     ],
 )
 def test_shift_between_the_clocks_is_named_with_its_remedy(shift_s, advice):
     log_us = 1_700_000_000_000_000 + 100_000 * np.arange(100)
-    (told,) = overlap_findings(log_us[20:30] + shift_s * 1_000_000, log_us, "navigation log")
+    times = log_us[20:30] + shift_s * 1_000_000
+    (told,) = overlap_findings(times, log_us, "navigation log", 0.0)
     assert re.search(advice, told.advice)
+    corrected = [float(one) for one in re.findall(r"time_offset_s: (-?[\d.]+)", told.advice)]
+    for offset_s in corrected:  # to the letter
+        (followed,) = overlap_findings(times + round(offset_s * 1e6), log_us, "navigation log", offset_s)
+        assert followed.level == Level.OK
+
+
+def test_labelled_views_have_their_column_named_for_a_shift():
+    log_us = 1_700_000_000_000_000 + 100_000 * np.arange(100)
+    (told,) = overlap_findings(log_us[20:30] - 3_600_000_000, log_us, "covariances")
+    assert "add 3600000000 us to column 1 of each view file (a time zone of 1 h)" in told.advice

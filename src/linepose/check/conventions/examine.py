@@ -23,7 +23,7 @@ from linepose.likelihood.published import PublishedLikelihood
 
 ALIKE: Final = 3.0  # in -log: odds of 20, below which two explanations are not told apart
 CONVINCING: Final = 10.0  # in -log: odds of 22,000, above which a mistake is believed
-_FIRST_STEPS: Final = 10  # after which explanations that fit far worse than the best are left
+_FIRST_STEPS: Final = 6  # after which explanations that fit far worse than the best are left
 _FAR_WORSE: Final = 10.0  # times the least -log
 _MAXIMUM_STEPS: Final = 40
 _TOLERANCE: Final = 1e-4
@@ -61,32 +61,27 @@ class Examination:
 
     @property
     def best(self) -> tuple[Explanation, ...]:
-        """What explains the data: the best, and all that the data cannot tell from it.
+        """What explains the data: the best, and all that the data cannot tell from it and that assume no more mistakes.
 
-        The data as given alone, where nothing explains them convincingly better.
+        The data as given alone, where nothing explains them convincingly better and nearer to the pixels.
         """
-        lowest = self.explanations[0].neg_log_posterior
-        if not lowest < self.as_given.neg_log_posterior - CONVINCING:
-            return (self.as_given,)
-        return tuple(one for one in self.explanations if one.neg_log_posterior < lowest + ALIKE)
+        given = self.as_given
+        better = [
+            one
+            for one in self.explanations
+            if one.neg_log_posterior < given.neg_log_posterior - CONVINCING
+            and not one.mean_error_px >= given.mean_error_px
+        ]
+        if not better:
+            return (given,)
+        alike = [one for one in better if one.neg_log_posterior < better[0].neg_log_posterior + ALIKE]
+        fewest = min(one.mistake.n_changes for one in alike)
+        return tuple(one for one in alike if one.mistake.n_changes == fewest)
 
     @property
     def is_mistaken(self) -> bool:
         """Whether a mistake explains the data convincingly better than taking them as given."""
         return self.best[0] is not self.as_given
-
-    def in_words(self) -> str:
-        """One line a reader can act on."""
-        first = self.best[0]
-        if not self.is_mistaken:
-            return f"the data fit the hand-measured pose to {first.mean_error_px:.1f} px; no usual mistake fits better"
-        given = self.as_given.mean_error_px
-        before = f"{given:.0f} px" if np.isfinite(given) else "no fit at all"
-        words = f"{first.mistake.name}: {first.mean_error_px:.1f} px with that undone, {before} as given; "
-        words += first.mistake.remedy
-        for other in self.best[1:]:
-            words += f". It may as well be that {other.mistake.name}; then {other.mistake.remedy}"
-        return words
 
 
 def examine(recording_at: RecordingAt, sigmas: HandSigmas, mistakes: Sequence[Mistake] | None = None) -> Examination:

@@ -1,14 +1,14 @@
 """What the doctor looks at: the observations, the camera and the hand-measured pose, and how to change them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera
+from linepose.survey.navigation_corrections import CORRECTIONS
 from linepose.survey.observations import Survey
 
 
@@ -22,7 +22,6 @@ class Recording:
 
 
 Change = Callable[[Recording], Recording]
-_AXES = range(3)
 
 
 def unchanged(recording: Recording) -> Recording:
@@ -30,68 +29,22 @@ def unchanged(recording: Recording) -> Recording:
     return recording
 
 
-def mapped_positions(matrix: ArrayLike) -> Change:
-    """A change of all positions to `matrix @ position`, (3, 3), their covariance with them."""
-    return _mapped_navigation(np.asarray(matrix, dtype=float), np.eye(3), np.zeros(3))
-
-
-def mapped_angles(matrix: ArrayLike, offset_rad: ArrayLike = (0.0, 0.0, 0.0)) -> Change:
-    """A change of roll, pitch, yaw to `matrix @ angles + offset`, (3, 3) and (3,), their covariance with them."""
-    return _mapped_navigation(np.eye(3), np.asarray(matrix, dtype=float), np.asarray(offset_rad, dtype=float))
-
-
-def scaled_angles(factor: float) -> Change:
-    """A change of unit of roll, pitch, yaw; the reported covariance, which comes from elsewhere, stays."""
+def corrected_navigation(names: Sequence[str]) -> Change:
+    """A change by navigation.corrections of these names, one after the other, of poses and covariances."""
 
     def change(recording: Recording) -> Recording:
         survey = recording.survey
-        return replace(recording, survey=replace(survey, euler_rad=factor * survey.euler_rad))
+        for name in names:
+            one = CORRECTIONS[name]
+            survey = replace(
+                survey,
+                position_m=one.of_positions(survey.position_m),
+                euler_rad=one.of_angles(survey.euler_rad),
+                covariance=one.of_covariances(survey.covariance),
+            )
+        return replace(recording, survey=survey)
 
     return change
-
-
-def _mapped_navigation(position: Floats, angles: Floats, offset_rad: Floats) -> Change:
-    both = np.zeros((6, 6))
-    both[:3, :3], both[3:, 3:] = position, angles
-
-    def change(recording: Recording) -> Recording:
-        survey = recording.survey
-        changed = replace(
-            survey,
-            position_m=survey.position_m @ position.T,
-            euler_rad=survey.euler_rad @ angles.T + offset_rad,
-            covariance=both @ survey.covariance @ both.T,
-        )
-        return replace(recording, survey=changed)
-
-    return change
-
-
-def turned_bodies(turn: Callable[[Floats], Floats]) -> Change:
-    """A change of the body's rotation matrices (K, 3, 3), body to world; the reported covariance stays."""
-
-    def change(recording: Recording) -> Recording:
-        survey = recording.survey
-        euler = survey.euler_rad.copy()
-        present = np.all(np.isfinite(euler), axis=-1)
-        euler[present] = rotations.euler_from_matrix(turn(rotations.matrix_from_euler(euler[present])))
-        return replace(recording, survey=replace(survey, euler_rad=euler))
-
-    return change
-
-
-def reordered_angles() -> Change:
-    """A change for angles meant as x, then y, then z intrinsic, in place of z, y, x."""
-    return turned_bodies(reordered)
-
-
-def reordered(matrices: Floats) -> Floats:
-    """`Rx(roll) Ry(pitch) Rz(yaw)` from `Rz(yaw) Ry(pitch) Rx(roll)`; (..., 3, 3) to (..., 3, 3)."""
-    roll, pitch, yaw = np.moveaxis(rotations.euler_from_matrix(matrices), -1, 0)
-    zero = np.zeros_like(roll)
-    single = [np.stack(angles, axis=-1) for angles in ((roll, zero, zero), (zero, pitch, zero), (zero, zero, yaw))]
-    about_x, about_y, about_z = (rotations.matrix_from_euler(angles) for angles in single)
-    return about_x @ about_y @ about_z
 
 
 def changed_pose(change: Callable[[Floats, Floats], tuple[Floats, Floats]]) -> Change:
@@ -106,17 +59,8 @@ def changed_pose(change: Callable[[Floats, Floats], tuple[Floats, Floats]]) -> C
 
 
 def flipped_scan_line(recording: Recording) -> Recording:
-    """The pixels counted from the other end of the line."""
-    survey = recording.survey
-    return replace(recording, survey=replace(survey, u_px=recording.camera.n_pixels - 1 - survey.u_px))
-
-
-def in_turn(*changes: Change) -> Change:
-    """Several changes, the first first."""
-
-    def change(recording: Recording) -> Recording:
-        for one in changes:
-            recording = one(recording)
-        return recording
-
-    return change
+    """Pixels counted from the other end of the line: the camera turned half about its axis, seen in a mirror."""
+    turned = changed_pose(lambda position, matrix: (position, matrix @ np.diag([-1.0, -1.0, 1.0])))(recording)
+    camera = recording.camera
+    mirrored = camera.replaced(principal_point_px=camera.n_pixels - 1 - camera.principal_point_px)
+    return replace(turned, camera=mirrored)

@@ -1,6 +1,6 @@
 """What a navigation format is: its name, its settings, and what reads its logs."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -62,6 +62,11 @@ def _is_not_recognised(_: Path) -> None:
     """No file is taken for a log of the format."""
 
 
+def _has_no_keys(_: Any, corrections: Sequence[str]) -> Sequence[Mapping[str, Any]]:  # noqa: ARG001
+    """No key of the format tells of axes, signs or units."""
+    return ()
+
+
 @dataclass(frozen=True)
 class NavigationFormat:
     """A navigation format: its name, the model of its keys, and what reads the logs of a data set's folder.
@@ -69,6 +74,8 @@ class NavigationFormat:
     `read` takes the section and the folder and returns a linepose.inputs.navigation.NavigationRecord.
     `has_covariances`: whether such logs as a rule hold covariances, so that no file of their own is needed.
     `recognise` returns the keys beside `format` and `file` that a log of this format needs, None for any other file.
+    `keys_against` returns, from the section and names of navigation.corrections, in which ways keys of the format may
+    say what these corrections would undo: each way keys, their parts apart by dots, with values.
     """
 
     name: str
@@ -76,6 +83,7 @@ class NavigationFormat:
     read: "Callable[[Any, Path], NavigationRecord]"
     has_covariances: bool = True
     recognise: "Callable[[Path], dict[str, Any] | None]" = _is_not_recognised
+    keys_against: "Callable[[Any, Sequence[str]], Sequence[Mapping[str, Any]]]" = _has_no_keys
 
 
 def with_contents(paths: Iterable[Path]) -> set[Path]:

@@ -17,12 +17,14 @@ from linepose.inputs.local_frame import (
     LocalFrame,
     check_geodetic,
     check_is_near,
+    geodetic_from_local,
     local_from_geodetic,
     projected_frame,
     tangent_frame,
     utm_crs,
 )
 from linepose.inputs.navigation.format import GeodeticSection
+from linepose.survey.corrected import corrected_covariances, corrected_poses
 from linepose.survey.navigation import NavigationCovariances
 from linepose.survey.navigation_log import NavigationLog
 
@@ -40,13 +42,15 @@ class NavigationRecord:
     `log`: body poses, position north, east, down (m), roll, pitch, yaw (rad), Unix time (us). `covariances`: of those,
     or None where the log has none and a file of their own is needed. `crs` and `origin`: the projected CRS of north and
     east ("EPSG:32633"), or "EPSG:4979" and the latitude, longitude (deg) and ellipsoidal height (m) from which north,
-    east, down are counted; both None where the log does not say.
+    east, down are counted; both None where the log does not say. `is_turned`: whether the angles were about true north
+    at each place, and were turned into that frame.
     """
 
     log: NavigationLog
     covariances: NavigationCovariances | None
     crs: str | None = None
     origin: tuple[float, float, float] | None = None
+    is_turned: bool = False
 
     @property
     def frame(self) -> LocalFrame | None:
@@ -105,7 +109,32 @@ def geodetic_record(
     if at_poses is not None:
         at_poses = NavigationCovariances(at_poses.time_us, _turned(frame, both, at_poses), at_poses.source)
     log = _log(both, position, euler)
-    return NavigationRecord(log, at_poses, frame.crs, frame.origin)
+    return NavigationRecord(log, at_poses, frame.crs, frame.origin, is_turned=True)
+
+
+def corrected_record(record: NavigationRecord, corrections: Sequence[str]) -> NavigationRecord:
+    """The record with navigation.corrections made of its poses and covariances.
+
+    Angles that were turned into a frame are corrected as they were before.
+    """
+    if not corrections:
+        return record
+    position, euler = record.log.position_m.copy(), record.log.euler_rad.copy()
+    frame = record.frame if record.is_turned else None
+    for first in range(0, len(position), _POSES_AT_ONCE):
+        part = slice(first, first + _POSES_AT_ONCE)
+        if frame is None:
+            position[part], euler[part] = corrected_poses(position[part], euler[part], corrections)
+            continue
+        _, turn = local_from_geodetic(frame, geodetic_from_local(frame, position[part]))
+        at_place = turned_angles(np.swapaxes(turn, -1, -2), euler[part])
+        position[part], at_place = corrected_poses(position[part], at_place, corrections)
+        euler[part] = turned_angles(turn, at_place)
+    log = replace(record.log, position_m=position, euler_rad=euler)
+    reported = record.covariances
+    return replace(
+        record, log=log, covariances=None if reported is None else corrected_covariances(reported, corrections)
+    )
 
 
 def _in_frame(frame: LocalFrame, poses: Poses) -> tuple[Floats, Floats]:

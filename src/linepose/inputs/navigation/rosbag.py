@@ -5,6 +5,7 @@ NovAtel's INSPVA or INSPVAX, Applanix's GSOF 49, PoseStamped or PoseWithCovarian
 world is east, north, up and the body x forward, y left, z up. Times are the headers' (Unix).
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final, Literal
 
@@ -99,7 +100,14 @@ def _is_bag(path: Path) -> dict[str, Any] | None:
     return {} if path.suffix in {".bag", ".db3", ".mcap"} or (path / "metadata.yaml").is_file() else None
 
 
-FORMAT: Final = NavigationFormat("rosbag", RosbagSection, read, recognise=_is_bag)
+def _keys_against(section: RosbagSection, corrections: Sequence[str]) -> list[dict[str, Any]]:
+    """The other `attitude_axes`; whether they move positions too depends on what the bag holds."""
+    if "attitude_axes" not in corrections or not {"attitude_axes", "positions_enu"}.issuperset(corrections):
+        return []
+    return [{"attitude_axes": axes} for axes in ("ned", "enu") if axes != section.attitude_axes]
+
+
+FORMAT: Final = NavigationFormat("rosbag", RosbagSection, read, recognise=_is_bag, keys_against=_keys_against)
 
 
 def _part(bag: Any, path: Path, section: RosbagSection) -> tuple[tuple[Poses, Covariances], bool]:

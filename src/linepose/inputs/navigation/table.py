@@ -20,6 +20,7 @@ from linepose.inputs.navigation.attitude_log import AttitudeSection, with_attitu
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
+from linepose.inputs.navigation.table_axes import keys_against
 from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts_of
 from linepose.inputs.navigation.table_file import read_columns
 from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad
@@ -134,7 +135,9 @@ def read(section: TableSection, folder: Path) -> NavigationRecord:
     return record if frame is None else replace(record, crs=frame.crs, origin=frame.origin)
 
 
-FORMAT: Final = NavigationFormat("table", TableSection, read, has_covariances=False, recognise=presets.recognised)
+FORMAT: Final = NavigationFormat(
+    "table", TableSection, read, has_covariances=False, recognise=presets.recognised, keys_against=keys_against
+)
 
 
 def _tables(section: TableSection, folder: Path) -> Iterator[Columns]:

@@ -32,10 +32,9 @@ def line_times_of(source: ScansSection) -> LineTimes:
 
     It returns Unix time (us), and raises InputError where a file is missing or cut, or does not fit the scan.
     """
-    read = _READERS[source.time_stamps]
 
     def line_times(scan: Path, n_lines: int) -> Stamps:
-        times, path, heading = read(scan, source)
+        times, path, heading = _read(scan, source)
         return checked_line_times(times, n_lines, path, heading)
 
     return line_times
@@ -44,10 +43,16 @@ def line_times_of(source: ScansSection) -> LineTimes:
 def first_time_us(source: ScansSection, folder: Path) -> int:
     """Unix time (us) of the first line of the first scan."""
     scan = next(iter(select_scans(folder, source.scans, ()).values()))
-    times, path, _ = _READERS[source.time_stamps](scan, source)
+    times, path, _ = _read(scan, source)
     if not len(times):
         raise InputError(str(path), "no time stamp", "one for each line of the scan", "restore the file")
     return int(times[0])
+
+
+def _read(scan: Path, source: ScansSection) -> tuple[Stamps, Path, int]:
+    """Unix times (us) of a scan's lines with `time_offset_s`, the file that they are of, and its rows of heading."""
+    times, path, heading = _READERS[source.time_stamps](scan, source)
+    return times + round(source.time_offset_s * 1e6), path, heading
 
 
 def _unix(times: Stamps, source: ScansSection) -> Stamps:

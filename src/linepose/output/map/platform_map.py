@@ -93,11 +93,12 @@ def platform_map(calibration: Calibration, section: "MapSection", folder: Path) 
     if not isinstance(source, ScansSection):
         found = "labelled views, which have no scans"
         raise InputError(f"{calibration.name}.yaml: source", found, "scans", "map a platform whose source is scans")
-    record, settings = read_navigation(source, folder), platform.navigation
+    settings = platform.navigation
+    record = read_navigation(source, folder, settings.corrections)
     navigation = Navigation(
         record.log,
         POSE_AT[settings.association],
-        log_covariances(record, source, settings.covariance_columns, folder),
+        log_covariances(record, source, settings.covariance_columns, folder, settings.corrections),
         settings.maximum_pose_gap_s,
         settings.maximum_gap_s,
     )

@@ -95,14 +95,17 @@ PLANTED = {
     "roll has the other sign": lambda r: with_angles(r, lambda a, b, c: stacked(-a, b, c)),
     "pitch has the other sign": lambda r: with_angles(r, lambda a, b, c: stacked(a, -b, c)),
     "yaw has the other sign": lambda r: with_angles(r, lambda a, b, c: stacked(a, b, -c)),
-    "yaw counts counter-clockwise": lambda r: with_angles(r, lambda a, b, c: stacked(a, b, np.pi / 2 - c)),
+    "counter-clockwise from east": lambda r: with_angles(r, lambda a, b, c: stacked(a, b, np.pi / 2 - c)),
+    "yaw is a quarter of a turn too large": lambda r: with_angles(r, lambda a, b, c: stacked(a, b, c + np.pi / 2)),
+    "yaw is a quarter of a turn too small": lambda r: with_angles(r, lambda a, b, c: stacked(a, b, c - np.pi / 2)),
+    "yaw counts from south": lambda r: with_angles(r, lambda a, b, c: stacked(a, b, c + np.pi)),
     "roll and pitch are swapped": lambda r: with_angles(r, lambda a, b, c: stacked(b, a, c)),
-    "(ROS)": ros,
+    "(ROS) where": ros,
     "the log's angles turn in the order x, y, z": other_order,
     "from world to body": inverted,
     "the log's angles are degrees": lambda r: with_angles(r, lambda *angles: np.rad2deg(stacked(*angles))),
     "converted to radians twice": lambda r: with_angles(r, lambda *angles: np.deg2rad(stacked(*angles))),
-    "forward, left, up": in_left_up,
+    "body frame of forward, left, up": in_left_up,
     "right, forward, up": in_right_forward_up,
     "the hand-measured height": lambda r: replace(r, pose=r.pose * [1, 1, -1, 1, 1, 1]),
     "the hand-measured angles are radians": in_radians,
@@ -124,7 +127,6 @@ def test_data_without_a_mistake_are_left_in_peace(recording):
     found = examine(Recorded(recording), SIGMAS)
     assert not found.is_mistaken
     assert found.best == (found.as_given,)
-    assert "no usual mistake fits better" in found.in_words()
 
 
 @pytest.mark.parametrize("name", PLANTED)
@@ -135,7 +137,6 @@ def test_planted_mistake_is_named(recording, name):
     assert any(name in one for one in named), [(e.mistake.name, e.neg_log_posterior) for e in found.explanations[:5]]
     assert len(named) <= 4
     assert found.best[0].mean_error_px < 15
-    assert found.best[0].mistake.remedy in found.in_words()
 
 
 @pytest.mark.parametrize("shift_s", [GPS_MINUS_UTC_S, -GPS_MINUS_UTC_S])
@@ -143,8 +144,8 @@ def test_clock_of_the_other_time_scale_is_named(recording, shift_s):
     found = examine(Recorded(recording, right_shift_s=shift_s), SIGMAS)
     (best,) = found.best
     assert best.mistake.clock_shift_s == shift_s
-    assert "GPS" in found.in_words()
-    assert "no fit at all" in found.in_words()
+    assert "GPS" in best.mistake.name
+    assert np.isnan(found.as_given.mean_error_px)
 
 
 def test_points_behind_the_camera_are_no_explanation(recording):
