@@ -39,6 +39,7 @@ def run(
     if not dry_run:
         check_no_run(root)
     loaded = load_platform_project(name, root, compared_platforms)
+    loaded.check_files()
     snakefile = find_workflow(root)
     quiet = ["--quiet", "host", *(["rules"] if dry_run else [])]
     arguments = ["--cores", str(cores or "all"), *quiet, "--config", f'platforms=["{name}"]']

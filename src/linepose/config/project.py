@@ -52,6 +52,24 @@ class Project:
         sources = [platform.source for platform in self.platforms.values() if platform.source.dataset == dataset]
         return sorted({path for source in sources for path in source.files(folder)})
 
+    def check_files(self) -> None:
+        """Raise InputError naming the first file that a platform's source names and that is not there.
+
+        A public data set's files are not looked for: they may be downloaded.
+        """
+        for name, platform in self.platforms.items():
+            dataset = platform.source.dataset
+            if dataset is None or dataset in self.datasets:
+                continue
+            folder = self.folders[dataset]
+            for path in sorted(platform.source.files(folder)):
+                if not path.is_file():
+                    named = _named_files(platform.source.model_dump(), "source")
+                    key = next((key for key, file in named.items() if folder / file == path), "source")
+                    found = "a folder" if path.is_dir() else "no such file"
+                    expected = f"the file that {key} of platform {name} names"
+                    raise InputError(str(path), found, expected, f"restore it, or correct {key}")
+
     def sums(self, dataset: str) -> dict[str, str | None]:
         """SHA-256 of each file of a data set by its path there, None for the user's own."""
         known = self.datasets[dataset].sha256 if dataset in self.datasets else {}
@@ -68,6 +86,15 @@ class Project:
         """The result that stands for all that the platform recorded: the checked sums, or the simulated survey."""
         dataset = self.platforms[platform].source.dataset
         return f"results/{platform}/simulated" if dataset is None else f"results/datasets/{dataset}.csv"
+
+
+def _named_files(section: Mapping[str, Any], above: str) -> dict[str, str]:
+    """Every text of a section and of those in it, by its key."""
+    found = {f"{above}.{key}": value for key, value in section.items() if isinstance(value, str)}
+    for key, value in section.items():
+        if isinstance(value, Mapping):
+            found |= _named_files(value, f"{above}.{key}")
+    return found
 
 
 Compared = Callable[[Platform, str], Sequence[str]]

@@ -2,9 +2,9 @@
 
 import re
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import Field, NonNegativeInt, field_validator
+from pydantic import AfterValidator, Field, NonNegativeInt, field_validator
 
 from linepose.adjustment.settings import AdjustmentSection
 from linepose.config.coverage import CoverageSection
@@ -12,7 +12,17 @@ from linepose.config.yaml_file import read_yaml
 from linepose.estimation.optimise import Search
 from linepose.estimation.outliers import OutlierSettings
 from linepose.estimation.sampling import SamplingSettings
+from linepose.inputs.patterns import Dataset
 from linepose.settings import Settings, validated
+
+
+def _is_path(path: str) -> str:
+    if not path.strip() or not path.isprintable() or any(sign in path for sign in "{}"):
+        raise ValueError("a path without braces, in which the workflow would look for its own words")
+    return path
+
+
+WorkflowPath = Annotated[str, AfterValidator(_is_path)]
 
 
 class DatasetSection(Settings):
@@ -29,6 +39,10 @@ class DatasetSection(Settings):
             path = PurePosixPath(file)
             if path.is_absolute() or ".." in path.parts or not path.parts or "\\" in file or not file.isprintable():
                 raise ValueError(f"paths below the data set's folder, not {file!r}")
+            if any(sign in file for sign in "{}"):
+                raise ValueError(
+                    f"names without braces, in which the workflow would look for its own words, not {file!r}"
+                )
             if not re.fullmatch("[0-9a-fA-F]{64}", found):
                 raise ValueError(f"64 hexadecimal digits for {file}, not {found!r}")
         return sums
@@ -39,10 +53,12 @@ class Study(Settings):
 
     platforms: list[str] = Field(min_length=1, description="Platforms to run: files of config/platforms.")
     platforms_folder: str = Field("config/platforms", description="Folder of the platform files.")
-    data_folders: list[str] = Field(
+    data_folders: list[WorkflowPath] = Field(
         ["data", "../shared"], min_length=1, description="Folders searched for data sets, in this order."
     )
-    datasets: dict[str, str] = Field(default_factory=dict, description="Data sets, name to file of their sums.")
+    datasets: dict[Dataset, WorkflowPath] = Field(
+        default_factory=dict, description="Data sets, name to file of their sums."
+    )
     offline: bool = Field(
         False,
         description="Leave out, with a warning, platforms whose data set is in no data folder, instead of downloading "

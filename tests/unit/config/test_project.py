@@ -64,6 +64,28 @@ def test_own_data_set_that_is_nowhere(root):
     )
 
 
+@pytest.mark.parametrize(
+    ("source", "missing", "key"),
+    [
+        ({}, "nav_covs.csv", "source.covariances"),
+        ({"kind": "scans", "views": None, "navigation": "log.csv", "labels": "l.csv"}, "l.csv", "source.labels"),
+        ({"kind": "scans", "views": None, "points": "detection", "navigation": "x/log.csv"}, "x/log.csv", "source.nav"),
+    ],
+)
+def test_file_that_is_missing_is_told_with_its_key_before_a_run(root, source, missing, key):
+    values = {name: value for name, value in (PLATFORM["source"] | source).items() if value is not None}
+    (root / "config" / "platforms" / "robot.yaml").write_text(yaml.safe_dump(PLATFORM | {"source": values}))
+    folder = root / "data" / "robot"
+    (folder / "x").mkdir(parents=True)
+    for name in ("covariances.csv", "log.csv", "a.view.csv"):
+        (folder / name).touch()
+    project = load_project(STUDY, root)
+    with pytest.raises(InputError, match=f"{missing}: found no such file, expected .* platform robot .*correct {key}"):
+        project.check_files()
+    (folder / missing).touch()
+    project.check_files()
+
+
 def test_platform_that_is_nowhere(root):
     with pytest.raises(InputError) as error:
         load_project(STUDY | {"platforms": ["robot", "rover"]}, root)

@@ -47,6 +47,19 @@ def test_values_reach_the_library_in_its_units():
     )
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("data_folders", ["d{a}"]),
+        ("data_folders", [" "]),
+        ("datasets", {"a": "config/{a}"}),
+        ("datasets", {"a/b": "c"}),
+    ],
+)
+def test_paths_that_a_run_cannot_use_are_refused(key, value):
+    assert key in message_of({"platforms": ["robot"], key: value})
+
+
 def test_committed_dataset_is_pinned_and_whole(ladybird_dataset):
     assert "14de42e7ad2bc0c4b82ed90cbba4b4f9004ac08e" in ladybird_dataset.base_url
     assert sum(file.startswith("labelled_points/") for file in ladybird_dataset.sha256) == 50
