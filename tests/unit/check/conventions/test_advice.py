@@ -35,7 +35,12 @@ SCANS = {"kind": "scans", "dataset": "mine"}
 MISTAKES = {mistake.name: mistake for mistake in usual_mistakes()}
 ALIKE = re.compile("the camera's axes are named otherwise: .* is its (?!y, -x, z|-x, -y, z|z, y, -x)")  # as others
 REFUSED = "the log's angles are degrees"  # by the readers, where one of them is above 2 pi
-IN_VIEWS = [name for name in MISTAKES if not (MISTAKES[name].clock_shift_s or ALIKE.match(name) or name == REFUSED)]
+IN_VIEWS = [  # of several together, those of ROS
+    name
+    for name, mistake in MISTAKES.items()
+    if not (mistake.clock_shift_s or ALIKE.match(name) or name == REFUSED)
+    and (mistake.n_changes == 1 or "attitude_axes" in mistake.corrections)
+]
 
 
 @dataclass(frozen=True)
