@@ -177,7 +177,8 @@ def geometry_findings(
         return [*findings, error("hand measurement", str(fault), "check hand_measured and the navigation's axes")], ()
     hand = settings.hand_measured
     near = HandSigmas(hand.sigma_position_m, float(np.radians(hand.sigma_rotation_deg)))
-    findings = agreed([*findings, *more], convention_findings(settings, recorder.at, recorder.of, near))
+    at = cache(recorder.at)  # tens of hypotheses look at the same few clocks
+    findings = agreed([*findings, *more], convention_findings(settings, at, recorder.of, near))
     if any(finding.level == Level.ERROR for finding in findings):
         return findings, ()
     prediction = predict(survey, camera, hand, settings.pose_prior() is not None, point_m, known_points)
