@@ -38,16 +38,17 @@ class Mistake:
 
     @property
     def n_changes(self) -> int:
-        """How many mistakes were made together."""
-        return max(1, len(self.corrections))
+        """How many mistakes were made together; the conventions of ROS are one."""
+        return 1 if self.corrections == _OF_ROS else max(1, len(self.corrections))
 
 
 AS_GIVEN: Final = Mistake("nothing: the data fit as they are given", unchanged)
 
+_OF_ROS: Final = ("positions_enu", "attitude_axes")
 _TOGETHER: Final = (
     ("pitch_sign", "yaw_sign"),
     ("pitch_sign", "yaw_minus_90"),
-    ("positions_enu", "attitude_axes"),
+    _OF_ROS,
     ("positions_enu", "yaw_sign"),
     ("positions_enu", "yaw_mirrored"),
     ("positions_enu", "pitch_sign"),
