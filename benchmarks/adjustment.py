@@ -2,6 +2,7 @@
 
 And how far halves of the field data lie apart.
 
+    python benchmarks/adjustment.py            # the first three
     python benchmarks/adjustment.py speed
     python benchmarks/adjustment.py growth --measurements 1000 10000 100000
     python benchmarks/adjustment.py prior-art
@@ -119,20 +120,23 @@ def halves(n_splits: int, seed: int) -> None:
 
 
 def main() -> None:
-    """Measure what is asked for."""
+    """Measure what is asked for; halves only if asked, because they take long."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("what", nargs="?", default="speed", choices=("speed", "growth", "prior-art", "halves"))
+    parser.add_argument("what", nargs="?", choices=("speed", "growth", "prior-art", "halves"))
     parser.add_argument("--surveys", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--measurements", type=int, nargs="+", default=[1000, 10_000, 100_000])
     asked = parser.parse_args()
-    if asked.what == "speed":
+    if asked.what in (None, "speed"):
+        print("The adjustment of 16 observations of 15 points, one core; to reach: a pass 0.15 ms, a survey 100 ms\n")
         speed()
-    elif asked.what == "growth":
+    if asked.what in (None, "growth"):
+        print("\nWhole adjustments of flights in strips; to reach: 100,000 measurements in 30 s, under 2 GB\n")
         growth(asked.measurements)
-    elif asked.what == "prior-art":
+    if asked.what in (None, "prior-art"):
+        print("\nOther programs on the same problem at the same levels\n")
         prior_art()
-    else:
+    if asked.what == "halves":
         halves(asked.surveys, asked.seed)
 
 

@@ -1,4 +1,4 @@
-"""Put what `make bench` printed into docs/benchmarks.md, and five rows of it into README.md, between their two marks.
+"""Put what `make bench` printed into docs/benchmarks.md, and some rows of it into README.md, between their two marks.
 
 `make bench | python benchmarks/into_readme.py`
 """
@@ -9,7 +9,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 BEGIN, END = "<!-- make bench -->\n", "<!-- end of make bench -->\n"
-KEPT = (r".* cores, .*Python", r" +observations +seconds", r"Powell +16", r"MCMC +16", r"The whole workflow")
+KEPT = (
+    r".* cores, .*Python",
+    r" +observations +seconds",
+    r"Powell +16",
+    r"MCMC +16",
+    r"survey +[0-9]",
+    r"The whole workflow",
+)
 
 
 def main() -> None:

@@ -151,13 +151,13 @@ def test_readme_fits_two_screens():
     assert len((ROOT / "README.md").read_text().splitlines()) <= 95
 
 
-def test_readme_has_five_rows_of_what_the_bench_printed():
+def test_readme_has_rows_of_what_the_bench_printed():
     block = re.compile(r"<!-- make bench -->\n```text\n(.*?)```\n<!-- end of make bench -->", re.DOTALL)
     (printed,) = block.findall((DOCS / "benchmarks.md").read_text())
     (kept,) = block.findall((ROOT / "README.md").read_text())
     rows = runpy.run_path(str(ROOT / "benchmarks" / "into_readme.py"))["rows_for_readme"](printed.splitlines())
     assert kept.splitlines() == rows
-    assert len(rows) == 5
+    assert len(rows) == 6
 
 
 def test_makefile_helps_with_every_target():

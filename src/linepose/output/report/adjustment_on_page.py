@@ -93,7 +93,7 @@ def halves_table(anchor: str, found: Sequence[Halves]) -> TableOnPage:
         for one in found
     ]
     heads = ["Noise model", "Observations", "Splits", "Median distance (sigmas)", "Times as far apart as stated"]
-    return TableOnPage(anchor, "Random halves", f"{len(rows)} comparisons", heads, rows)
+    return TableOnPage(anchor, "Random halves", f"{len(rows)} comparison{'s' * (len(rows) != 1)}", heads, rows)
 
 
 def view_table(anchor: str, views: pd.DataFrame) -> TableOnPage:
@@ -111,5 +111,10 @@ def view_table(anchor: str, views: pd.DataFrame) -> TableOnPage:
 
 def _interval(value: float, low: float, high: float) -> str:
     if not np.isfinite([low, high]).all():
-        return f"{value:.2g}"
-    return f"{value:.2g} ({low:.2g} to {high:.2g})"
+        return _two_digits(value)
+    return f"{_two_digits(value)} ({_two_digits(low)} to {_two_digits(high)})"
+
+
+def _two_digits(value: float) -> str:
+    """To two digits that count, written out: 15000, not 1.5e+04."""
+    return f"{float(f'{value:.2g}'):.10g}"
