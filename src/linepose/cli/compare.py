@@ -54,12 +54,18 @@ def lines_of(found: "Comparison") -> list[str]:
         lines.append(f"{quantity:10s}{cells[0]:>24s}{cells[1]:>12s}{row['sigmas'] + 0.0:>+12.1f}")
     for group in GROUPS:
         one = found.change.test(group)
-        lines.append(f"{group:10s} {one.distance:.2f} sigmas apart, p = {one.p_value:.3g}")
+        chance = "" if found.n_shared_measurements else f", p = {one.p_value:.3g}"
+        lines.append(f"{group:10s} {one.distance:.2f} sigmas apart{chance}")
     for place, row in found.pixels.iterrows():
         lines.append(
             f"{place} pixel at {found.range_m:g} m: {1e3 * row['along_m']:+.1f} +- {1e3 * row['sigma_along_m']:.1f} mm "
             f"along the line, {1e3 * row['across_m']:+.1f} +- {1e3 * row['sigma_across_m']:.1f} mm across it "
             f"({row['shift_px']:.2f} px)"
+        )
+    if found.n_shared_measurements:
+        lines.append(
+            f"both rest on the same {found.n_shared_measurements} measurements: how unlikely the difference is cannot "
+            "be said, and its sigmas are too large"
         )
     if found.shares_hand_measurement:
         lines.append("both rest on the same hand measurement, which counts once")

@@ -155,7 +155,7 @@ def _shown(target: str, source: str | None) -> "TargetSection":
         raise InputError("--target", "with --source labelled_views", "--source scans", "leave one of them out")
     if target in KINDS:
         return KINDS[target](kind=target)
-    if not Path(target).suffix:
+    if not Path(target).suffix and not Path(target).is_file():
         raise InputError("--target", repr(target), f"a file, or one of {', '.join(KINDS)}", "correct it")
     return read_target(Path(target))
 

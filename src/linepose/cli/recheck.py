@@ -1,7 +1,7 @@
 """`linepose recheck NAME --data FOLDER`: whether a calibration still holds, by a few new views."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -10,7 +10,7 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 if TYPE_CHECKING:
     from linepose.pipeline.recheck import Recheck
 
-MOVED: Final = 3  # exit code; 1 is a fault, 2 a wrong option
+MOVED, BLIND = 3, 4  # exit codes; 1 is a fault, 2 a wrong option
 
 
 def recheck(
@@ -26,7 +26,8 @@ def recheck(
 ) -> None:
     """Tell whether a finished platform's calibration still holds, by a few new views.
 
-    Exit code 0 where it holds, 3 where the camera has moved, 1 where the views cannot be used.
+    Exit code 0 where it holds, 3 where the camera has moved, 4 where the views see no move at all, 1 where they cannot
+    be used.
     """
     import json
 
@@ -43,7 +44,7 @@ def recheck(
         for line in lines_of(found):
             typer.echo(line)
     if not found.holds:
-        raise typer.Exit(MOVED)
+        raise typer.Exit(MOVED if found.sees else BLIND)
 
 
 def lines_of(found: "Recheck") -> list[str]:

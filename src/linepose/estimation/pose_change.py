@@ -19,7 +19,7 @@ WHOLE: Final = "all six"
 FALSE_ALARMS: Final = 0.05
 POWER: Final = 0.8
 SCALE: Final = np.array([0.3] * 3 + [float(np.deg2rad(5.0))] * 3)  # of moves that a recheck looks for, m and rad
-_SEEN: Final = 1e-3  # of the information that a sigma of the scale has, below which a direction is not seen
+_SEEN: Final = 0.1  # of the information that a sigma of the scale has, below which a direction is not seen
 _ROUNDING: Final = 1e-10
 
 

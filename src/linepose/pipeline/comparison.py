@@ -19,7 +19,8 @@ class Comparison:
     """How a second calibration differs from a first.
 
     `difference` (6,) and its `covariance` (6, 6): m, and turn (rad) about body axes; `pixels`: one row a place on the
-    line, with the shift along and across it (m) and sigmas; `shares_hand_measurement`: whether both rest on the same.
+    line, with the shift along and across it (m) and sigmas; `shares_hand_measurement`: whether both rest on the same;
+    `n_shared_measurements`: on which both rest, with any of which there is no p-value.
     """
 
     names: tuple[str, str]
@@ -28,6 +29,7 @@ class Comparison:
     range_m: float
     pixels: pd.DataFrame
     shares_hand_measurement: bool
+    n_shared_measurements: int = 0
 
     @property
     def change(self) -> PoseChange:
@@ -48,15 +50,24 @@ class Comparison:
             "version": 1,
             "first": self.names[0],
             "second": self.names[1],
-            "differences": self.table().to_dict(orient="index"),
-            "tests": {group: {"sigmas": one.distance, "p_value": one.p_value} for group, one in tests.items()},
-            "range_m": self.range_m,
-            "pixels": {
-                place: {name: float(value) if np.isfinite(value) else None for name, value in row.items()}
-                for place, row in self.pixels.iterrows()
+            "differences": _finite(self.table()),
+            "tests": {
+                group: {"sigmas": one.distance, "p_value": None if self.n_shared_measurements else one.p_value}
+                for group, one in tests.items()
             },
+            "range_m": self.range_m,
+            "pixels": _finite(self.pixels),
             "shares_hand_measurement": self.shares_hand_measurement,
+            "n_shared_measurements": self.n_shared_measurements,
         }
+
+
+def _finite(table: pd.DataFrame) -> dict[str, dict[str, float | None]]:
+    """Rows as JSON holds them: None for what is no finite number."""
+    return {
+        str(name): {key: float(value) if np.isfinite(value) else None for key, value in row.items()}
+        for name, row in table.iterrows()
+    }
 
 
 def compare(first: Calibration, second: Calibration, range_m: float) -> Comparison:
@@ -81,8 +92,7 @@ def compare(first: Calibration, second: Calibration, range_m: float) -> Comparis
     shared = _prior_of(first) is not None and _same(_prior_of(first), _prior_of(second))
     total = covariances[0] + covariances[1]
     if shared:
-        common = covariances[1] @ np.linalg.solve(first.hand_measured.body_covariance, covariances[0])
-        total = total - common - common.T
+        total = covariance_of_difference(covariances, first.hand_measured.body_covariance)
     mounted = [Mounted(one.camera, one.pose) for one in (first, second)]
     return Comparison(
         (first.name, second.name),
@@ -91,7 +101,32 @@ def compare(first: Calibration, second: Calibration, range_m: float) -> Comparis
         range_m,
         _pixels(mounted[0], mounted[1], range_m, total),
         shared,
+        _n_shared_measurements(first, second),
     )
+
+
+def covariance_of_difference(covariances: list[Floats], prior: Floats) -> Floats:
+    """Covariance (6, 6) of the difference of two estimates with these, of which one prior (6, 6) is a part.
+
+    Each is `S = (L + P^-1)^-1`, L the information of its data; what the prior errs by moves it by `1 - S L` times
+    that, and cancels where both do so alike.
+    """
+    root = np.linalg.cholesky(prior)
+    total, moved = np.zeros((6, 6)), np.zeros((6, 6))
+    for sign, covariance in zip((1.0, -1.0), covariances, strict=True):
+        scaled = root.T @ np.linalg.inv(covariance) @ root - np.eye(6)
+        values, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
+        values = np.maximum(values, 0.0)  # draws of the posterior may be wider than the prior by chance
+        own = root @ vectors
+        total += (own * (values / (1 + values) ** 2)) @ own.T
+        moved += sign * (own * (values / (1 + values))) @ np.linalg.solve(root.T, vectors).T
+    return total + moved @ prior @ moved.T
+
+
+def _n_shared_measurements(first: Calibration, second: Calibration) -> int:
+    """How many measurements both rest on, by time and pixel."""
+    tables = [one.observations.loc[one.observations["time_us"] != 0, ["time_us", "u_px"]] for one in (first, second)]
+    return len(tables[0].merge(tables[1], on=["time_us", "u_px"]))
 
 
 def _prior_of(calibration: Calibration) -> Floats | None:

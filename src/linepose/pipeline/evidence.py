@@ -133,7 +133,12 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:
 
 
 def navigation_error(level: "pd.Series[float]") -> float:
-    """The whole navigation error of positions, in reported sigmas: drift, constant and white together."""
+    """The whole navigation error, in reported sigmas: that of positions, or of attitudes where it is the larger."""
+    return position_error(level) * max(1.0, float(level["attitude"]))
+
+
+def position_error(level: "pd.Series[float]") -> float:
+    """The navigation error of positions, in reported sigmas: drift, constant and white together."""
     return float(np.sqrt(np.sum(level[["drift", "constant", "white"]].astype(float) ** 2)))
 
 

@@ -49,7 +49,7 @@ def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
 def _hand_view(platform: Platform, source: ScansSection, folder: Path) -> "HandView":
     from linepose.inputs.targets.rectified import HandView
 
-    log = read_navigation(source, folder).log
+    log = read_navigation(source, folder, platform.navigation.corrections).log
     return HandView(platform.intrinsics(), platform.start_pose(), log, source.target_range_m)
 
 

@@ -19,6 +19,7 @@ from linepose.estimation.noise_models import ADJUSTMENT
 from linepose.estimation.pose_change import FALSE_ALARMS, GROUPS, MOVES, PER_MOVE, POWER, WHOLE, PoseChange
 from linepose.estimation.recheck import recheck as compare_views
 from linepose.geometry.distance import mahalanobis_distance
+from linepose.inputs.source import ScansSection
 from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.known_points import known_of_platform, known_of_survey
 from linepose.pipeline.load import read_observations
@@ -47,8 +48,8 @@ class Recheck:
 
     @property
     def holds(self) -> bool:
-        """Whether the views agree with the calibration, by the test of all six numbers."""
-        return self.change.test(WHOLE).p_value >= self.false_alarms
+        """Whether the views agree with the calibration, by the test of all six numbers; not where they see nothing."""
+        return self.sees and self.change.test(WHOLE).p_value >= self.false_alarms
 
     @property
     def sees(self) -> bool:
@@ -73,6 +74,7 @@ class Recheck:
             "version": VERSION,
             "platform": self.name,
             "holds": self.holds,
+            "sees": self.sees,
             "false_alarms": self.false_alarms,
             "power": POWER,
             "n_observations": {"calibration": self.n_calibrated, "views": self.n_views},
@@ -138,7 +140,7 @@ def recheck(
     if not told.converged:
         raise EstimationError(
             f"recheck of {calibration.name}: the adjustment of the {survey.n_observations} new views has not converged;"
-            " add views from other sides, or look for wrong labels with `linepose check`"
+            " add views from other sides, or correct wrong labels among them"
         )
     prior_aside = replace(told, disagreement_sigmas=np.full(6, np.nan), open_directions=())
     return Recheck(
@@ -204,7 +206,10 @@ def recheck_platform(
 
 def _new_views(platform: Platform, folder: Path) -> tuple[pd.DataFrame, dict[str, PointKnowledge]]:
     """Observations of a folder in the platform's own formats, and what is known of their points there."""
-    few = platform.model_copy(update={"prior": "hand_measured"})  # the calibration stands in for what few views lack
+    kept = {"left_out": ()} if isinstance(platform.source, ScansSection) else {"first": 1, "step": 1}
+    source = platform.source.model_copy(update=kept)  # which of the calibration's views count says nothing of these
+    # a prior, since the calibration stands in for what few views lack
+    few = platform.model_copy(update={"prior": "hand_measured", "source": source})
     observations = read_observations(few, folder)
     return observations, known_of_platform(few, folder, observations)
 

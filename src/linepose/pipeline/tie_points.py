@@ -66,8 +66,9 @@ def matched_points(platform: Platform, folder: Path) -> pd.DataFrame:
     source = platform.source
     assert isinstance(source, ScansSection)
     settings = source.matching
-    record = read_navigation(source, folder)
-    reported = log_covariances(record, source, platform.navigation.covariance_columns, folder)
+    corrections = platform.navigation.corrections
+    record = read_navigation(source, folder, corrections)
+    reported = log_covariances(record, source, platform.navigation.covariance_columns, folder, corrections)
     origin_m = record.log.position_m[0]
     strips = read_strips(platform, folder, record.log, origin_m)
     hand = _by_hand(platform, strips, _ground_down_m(platform) - origin_m[2])
@@ -185,9 +186,9 @@ def _check_matched(
     place: Path,
 ) -> None:
     """Raise InputError where there are no points; a strip without any match is told in the log."""
-    n_matches = sum(len(one.rows) for one in matches.values())
+    n_matches, n_alike = sum(len(one.rows) for one in matches.values()), sum(one.n_alike for one in matches.values())
     if n_matches < _FEWEST_POINTS:
-        n_alike, n_features = sum(one.n_alike for one in matches.values()), sum(len(one) for one in features)
+        n_features = sum(len(one) for one in features)
         raise InputError(
             str(place),
             f"{n_matches} matches between {len(matches)} pairs of strips ({n_features} features, {n_alike} look alike)",
@@ -197,6 +198,9 @@ def _check_matched(
     matched = {k for pair, one in matches.items() if len(one.rows) for k in pair}
     for k in sorted(set(range(len(strips))) - matched):
         log.warning("scan %d: no match with any other strip: left out", strips[k].number)
+    refused = n_alike - n_matches
+    if refused:
+        log.info("%d of %d matches that look alike lie where the others do not say: left out", refused, n_alike)
 
 
 def _survey(
@@ -213,7 +217,7 @@ def _adjusted(survey: Survey, platform: Platform) -> PoseAtLevels:
     """The pose from what was matched; raises InputError where it leads to none."""
     by_hand = platform.hand_measured
     try:
-        return pose_at_levels(survey, platform.camera, by_hand.pose, by_hand.body_covariance)
+        found = pose_at_levels(survey, platform.camera, by_hand.pose, by_hand.body_covariance)
     except EstimationError as error:
         raise InputError(
             "source.points",
@@ -221,6 +225,9 @@ def _adjusted(survey: Survey, platform: Platform) -> PoseAtLevels:
             "strips that overlap at two heights or in two directions",
             "correct hand_measured, or label points (source.points: labels)",
         ) from None
+    if not found.converged:
+        log.warning("the pose at hand for the next round has not converged: look at the weights of the result")
+    return found
 
 
 def _at_hand(
@@ -240,9 +247,16 @@ def _without_wrong(points: pd.DataFrame, survey: Survey, adjusted: PoseAtLevels)
     row = np.searchsorted(survey.number, points["observation"])
     column = pd.Index(survey.names).get_indexer(points["point"])
     of_point = adjusted.measurement_weight[row, column]
-    kept = points[~(of_point < _WRONG_WEIGHT)]
-    kept = kept[kept.groupby("point")["observation"].transform("size") > 1]
-    log.info("%d of %d measurements are taken for wrong and left out", len(points) - len(kept), len(points))
+    right = points[~(of_point < _WRONG_WEIGHT)]
+    kept = right[right.groupby("point")["observation"].transform("size") > 1]
+    log.info(
+        "%d of %d measurements are taken for wrong and left out, and %d of points that are then seen once",
+        len(points) - len(right),
+        len(points),
+        len(right) - len(kept),
+    )
+    for number in sorted(set(survey.number.tolist()) - set(kept["observation"])):
+        log.warning("scan %d: no measurement is left: left out", number)
     return kept.reset_index(drop=True)
 
 

@@ -42,7 +42,7 @@ class TexturedGroundSection(Settings):
 
 
 class FlightErrorSection(Settings):
-    """Sigmas of the navigation's errors, which drift; a share of them is white besides. They are what is reported."""
+    """Sigmas of the navigation's errors, which drift, as reported; a share of them is white besides."""
 
     position_m: NonNegativeFloat = Field(0.02, description="Of each coordinate (m).")
     roll_pitch_deg: NonNegativeFloat = Field(0.02, description="Of roll and pitch (deg).")
@@ -87,7 +87,7 @@ class FlightSection(Settings):
     ground: TexturedGroundSection = Field(TexturedGroundSection(), description="The ground.")
     navigation_error: FlightErrorSection = Field(FlightErrorSection(), description="The navigation's errors.")
     lateness_lines: NonNegativeFloat = Field(
-        0.0, description="Sigma of the time stamps' error, each for itself (lines)."
+        0.0, le=0.15, description="Sigma of the time stamps' error, each for itself (lines)."
     )
     start_time_us: NonNegativeInt = Field(1_466_000_000_000_000, description="When the flight begins (us since 1970).")
     origin_m: Triple = Field((6_248_550.0, 332_965.0, -42.0), description="Of the map's north, east, down (m).")

@@ -57,7 +57,7 @@ def down_at(north: float, east: float, waves: Floats) -> float:
 
 @numba.njit(cache=True)
 def reflectance_at(north: float, east: float, grain_m: float, contrast: float, rows_m: float, seed: int) -> float:
-    """Reflectance of the ground (0 to 1): of rows that run north, or of grains of several sizes."""
+    """Reflectance of the ground (0 to 1): of plants in rows, or of grains of several sizes."""
     if rows_m > 0.0:
         return _MEAN * (1.0 + contrast * np.cos(2 * np.pi * east / rows_m) * np.cos(2 * np.pi * north / rows_m))
     value, size = 0.0, grain_m

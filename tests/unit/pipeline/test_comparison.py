@@ -12,7 +12,7 @@ from linepose.cli.compare import lines_of
 from linepose.geometry.distance import difference_covariance
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.pipeline.calibration import Calibration
-from linepose.pipeline.comparison import compare
+from linepose.pipeline.comparison import compare, covariance_of_difference
 from linepose.pipeline.results import Results
 from unit import made_up
 
@@ -55,6 +55,24 @@ def test_a_hand_measurement_of_both_counts_once(pair):
     by_hand = weights[0] - weights[1]
     expected = sum(w @ d @ w.T for w, d in zip(weights, data, strict=True)) + by_hand @ prior @ by_hand.T
     assert_allclose(found.covariance, expected, rtol=1e-6, atol=1e-12)
+
+
+def test_a_posterior_no_narrower_than_the_prior_leaves_a_covariance():
+    """Of few draws it may be a little wider by chance; what it says of the difference is then none, not less."""
+    prior = np.diag([0.1**2] * 3 + [0.03**2] * 3)
+    wider, narrow = prior * 1.02, prior * 0.25
+    wider[:3, :3] *= 0.5
+    for first, second in ((wider, prior), (prior, wider), (wider, narrow)):
+        assert np.linalg.eigvalsh(covariance_of_difference([first, second], prior))[0] >= -1e-18
+    assert_allclose(covariance_of_difference([prior, prior], prior), np.zeros((6, 6)), atol=1e-18)
+
+
+def test_measurements_of_both_are_counted_and_leave_no_p_value(pair):
+    found = compare(*pair, range_m=10.0)
+    timed = int((pair[0].observations["time_us"] != 0).sum())
+    assert found.n_shared_measurements == timed
+    p_values = {one["p_value"] is None for one in found.as_dict()["tests"].values()}
+    assert p_values == {timed > 0}
 
 
 def test_without_a_prior_the_two_are_independent(pair):

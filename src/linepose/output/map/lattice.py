@@ -72,7 +72,7 @@ def lattice_of(igm: Floats, cell_m: float | None, scan: str, n_cores: int) -> La
     if n_rows * n_columns > _MOST_CELLS:
         found, expected = f"a map of {n_rows} x {n_columns} cells of {cell_m:g} m", f"at most {_MOST_CELLS}"
         least_m = cell_m * float(np.sqrt(n_rows * n_columns / _MOST_CELLS))
-        raise InputError(scan, found, expected, f"write map.cell_m: {1.01 * least_m:.2g} or more")
+        raise InputError(scan, found, expected, f"write map.cell_m: {_rounded(1.01 * least_m):g} or more")
     rows = np.stack([-boxes_m[:, 1], -boxes_m[:, 0], boxes_m[:, 2], boxes_m[:, 3]], axis=-1) / cell_m
     boxes = np.floor(rows) - np.array([first[0], first[0], first[1], first[1]])
     return Lattice(cell_m, *first, n_rows, n_columns, boxes, _LONGEST * max(1.0, apart_m / cell_m))

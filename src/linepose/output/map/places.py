@@ -25,7 +25,7 @@ from linepose.output.map.sources import (
     radii_of_95,
 )
 from linepose.survey.navigation import NavigationCovariances
-from linepose.survey.navigation_log import NavigationLog, PoseAt
+from linepose.survey.navigation_log import NavigationLog, PoseAt, interpolated_pose
 
 N_PLACE: Final = 3
 N_SIGMA: Final = 4
@@ -118,7 +118,7 @@ class ScanOnMap:
         begin, last = max(first - 1, 0), min(end + 1, self.shape[0])
         if last - begin < 2:
             return np.zeros((end - first, 6))
-        position, euler = self.navigation.pose_at(self.navigation.log, self.time_us[begin:last])
+        position, euler = interpolated_pose(self.navigation.log, self.time_us[begin:last])  # the nearest would jump
         pose = np.concatenate([position - position[0], np.unwrap(euler, axis=0)], axis=1)
         return np.asarray(np.gradient(pose, axis=0)[first - begin : end - begin])
 

@@ -68,6 +68,12 @@ def write_rasters(
     check_target(record)
     record.unlink(missing_ok=True)
     remove_leftovers(output, [*names, record.name])
+    for stale in (
+        f"{name}-glt.dat",
+        f"{name}-glt.hdr",
+        f"{name}.tif",
+    ):  # of another pose or bands
+        (output / stale).unlink(missing_ok=True)
     igm: Floats = np.memmap(output / f"{name}-igm.dat", dtype="<f8", mode="r", shape=(shape[0], N_PLACE, shape[1]))
     lattice = lattice_of(igm, section.cell_m, str(path), n_cores)
     if lattice is None:

@@ -32,7 +32,9 @@ def budget_sentences(made: ScanMap) -> list[str]:
         by_source = rows.set_index("source")["horizontal_m"].astype(float).dropna() * _MM
         parts = [f"{source} {value:.1f}" for source, value in by_source.items() if source != ALL]
         if parts:
-            told.append(f"  one sigma at the {place}: {by_source[ALL]:.1f} mm; of that {', '.join(parts)}")
+            told.append(
+                f"  one sigma at the {place}: {by_source[ALL]:.1f} mm; its sources, each alone: {', '.join(parts)}"
+            )
     return told
 
 

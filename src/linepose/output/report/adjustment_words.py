@@ -10,7 +10,7 @@ from linepose.adjustment.thresholds import CLOCK, JUMP, LABEL, UNCLEAR
 from linepose.arrays import Floats
 from linepose.experiments.adjustment_beside import INLIERS
 from linepose.output.adjusted import common_share, set_in_words
-from linepose.pipeline.evidence import navigation_error
+from linepose.pipeline.evidence import position_error
 
 LEVEL_WORDS: Final = {
     "drift": "Navigation error that drifts (reported sigmas)",
@@ -39,7 +39,7 @@ def level_values(table: pd.DataFrame) -> pd.DataFrame:
 def levels_sentence(table: pd.DataFrame) -> str:
     """The levels in two sentences; `table` as in `LEVELS`."""
     value = level_values(table)["value"]
-    whole = navigation_error(value)
+    whole = position_error(value)
     parts = []
     if value["drift"] >= _NOTABLE:
         parts.append(f"{value['drift']:.2g} drifts within {seconds(value['correlation_time_s'])}")
