@@ -11,10 +11,11 @@ from linepose.check.finding import Finding, error, ok, warning
 Times = NDArray[np.int64]
 
 _SUBJECT: Final = "time"
+_LOST_WEEKS_S: Final = 619_315_200
 _NAMED_OFFSETS_S: Final = (
     (18, "GPS time against UTC (18 leap seconds since 2017)"),
     (17, "GPS time against UTC (17 leap seconds, 2015 to 2016)"),
-    (619_315_200, "1024 GPS weeks, which a receiver lost"),
+    (_LOST_WEEKS_S, "1024 GPS weeks, which a receiver lost"),
     (37, "TAI against UTC"),
     (19, "TAI against GPS time"),
     (315_964_800, "the GPS epoch of 1980 against that of 1970"),
@@ -23,10 +24,6 @@ _NAMED_OFFSETS_S: Final = (
     (86_400, "a day"),
 )
 
-_REMEDIES: Final = {  # of shifts of the camera's clock (s)
-    -619_315_200: ", the navigation's: add 619315200 s to its times, or correct its gps_week",
-    619_315_200: ", the camera's: add 619315200 s to its times",
-}
 _HEADER_TOLERANCE_S: Final = 5.0  # headers say whole seconds, and a recorder starts a little later
 _WHOLE_TOLERANCE_S: Final = 2.0
 
@@ -52,22 +49,30 @@ def overlap_findings(time_us: Times, navigation_us: Times, what: str, offset_s: 
     earliest, latest = (start - time_us.min()) / 1e6, (end - time_us.max()) / 1e6
     found = f"no point lies within the {what}: points from {_told(time_us.min())}, {what} from {_told(start)}"
     names = [
-        f"{_moved(sign * seconds, offset_s)} ({name}{_REMEDIES.get(sign * seconds, '')})"
+        f"{_remedy(sign * seconds, offset_s)} ({name})"
         for seconds, name in _NAMED_OFFSETS_S
         for sign in (1, -1)
         if earliest <= sign * seconds <= latest
     ]
     if names:
         return [error(_SUBJECT, found, "; or ".join(names[:3]))]
-    advice = f"correct the camera's clock by {earliest:.1f} to {latest:.1f} s, or bring the log of that day"
+    key = "" if offset_s is None else " (source.time_offset_s)"
+    advice = f"move the camera's clock{key} by {earliest:.1f} to {latest:.1f} s, or bring the log of that day"
     return [error(_SUBJECT, found, advice if earliest <= latest else "bring the log that covers the whole survey")]
+
+
+def _remedy(shift_s: int, offset_s: float | None) -> str:
+    """What mends a named offset: of weeks that the navigation lost, in its log; else what moves the camera's clock."""
+    if shift_s == -_LOST_WEEKS_S:
+        return f"add {_LOST_WEEKS_S} s to the times of the navigation, or correct its gps_week"
+    return _moved(shift_s, offset_s)
 
 
 def _moved(shift_s: int, offset_s: float | None) -> str:
     """What moves the camera's clock by a shift, as an imperative."""
     if offset_s is None:
         return f"add {shift_s * 1_000_000} us to column 1 of each view file"
-    return f"set source.time_offset_s: {offset_s + shift_s:.10g}"
+    return f"set source.time_offset_s: {offset_s + shift_s:.13g}"
 
 
 def header_findings(first_us: Mapping[str, int], header_us: Mapping[str, int], offset_s: float = 0.0) -> list[Finding]:
@@ -80,19 +85,14 @@ def header_findings(first_us: Mapping[str, int], header_us: Mapping[str, int], o
     if not apart:
         return []
     late = late_s[apart[0]]
-    names = [
-        f"{name}{_REMEDIES.get(round(np.sign(-late)) * seconds, '')}"
-        for seconds, name in _NAMED_OFFSETS_S
-        if _is_whole(abs(late), seconds)
-    ]
+    names = [name for seconds, name in _NAMED_OFFSETS_S if _is_whole(abs(late), seconds)]
     alike = f" (and {len(apart) - 1} more scans)" if len(apart) > 1 else ""
     found = f"{apart[0]}: its time stamps begin {abs(late):.3f} s {'after' if late > 0 else 'before'} the time in its "
     found += f"header, read as UTC{alike}" + (f": {names[0]}" if names else "")
-    right_s = next(
-        (sign * seconds for seconds, _ in _NAMED_OFFSETS_S for sign in (1, -1) if _is_whole(late, sign * seconds)), late
-    )
+    right_s = [sign * seconds for seconds, _ in _NAMED_OFFSETS_S for sign in (1, -1) if _is_whole(late, sign * seconds)]
     advice = "find out which of the two is right by a landmark; if it is the header, "
-    advice += f"set source.time_offset_s: {offset_s - right_s:.13g}"
+    exactly = f"set source.time_offset_s: {offset_s - right_s[0]:.13g}" if right_s else ""
+    advice += exactly or "measure the offset by the landmark, and set source.time_offset_s to it"
     return [warning(_SUBJECT, found, advice)]
 
 

@@ -1,7 +1,7 @@
 """Everything that can be known of a platform before a run, in one pass and in seconds."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Final, TypeVar
@@ -226,6 +226,9 @@ def _navigation_findings(
         if reported is not None:
             about = "covariance", "navigation.maximum_gap_s"
             within = clock.overlap_findings(time_us, reported.time_us, "covariances", offset_s)
+            if log is not None and findings[-1].level == Level.OK:  # the clock is right: the file's is not
+                remedy = "correct the times in source.covariances (column 1, us)"
+                within = [replace(one, advice=remedy) if one.advice else one for one in within]
             gaps = clock.gap_findings(time_us, reported.time_us, navigation.maximum_gap_s, *about)
             findings += within if within[0].level == Level.ERROR and gaps[0].level == Level.ERROR else gaps
     return findings, Recorded(points, log, reported)
@@ -260,6 +263,8 @@ def _column_findings(settings: Platform, path: Path) -> list[Finding]:
 
 def _simulated(settings: Platform) -> tuple[list[Finding], pd.DataFrame | None]:
     """A simulated platform that has not been run: its geometry can be checked all the same."""
+    if settings.flight is not None:
+        return [ok("data set", "a simulated flight, not made yet: checked after `linepose run`")], None
     if settings.simulation is None:
         return [], None
     survey, _ = simulate_survey(settings.intrinsics(), settings.simulation, settings.simulation.seed)

@@ -50,7 +50,8 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
         findings.append(ok("scans", f"{len(scans)} scans of {n_pixels} pixels, a time stamp for each line"))
     if source.points != "labels":
         found = (
-            "points are found without labels: their numbers, and predicted sigmas, are known after the run's extraction"
+            "points are found without labels: their numbers, conventions and predicted sigmas are known after "
+            "the run's extraction"
         )
         return [*findings, ok("labels", found)], None
     try:

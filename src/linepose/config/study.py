@@ -18,7 +18,7 @@ from linepose.settings import Settings, validated
 
 def _is_path(path: str) -> str:
     if not path.strip() or not path.isprintable() or any(sign in path for sign in "{}"):
-        raise ValueError("a path without braces, in which the workflow would look for its own words")
+        raise ValueError("a printable path without braces, in which the workflow would look for its own words")
     return path
 
 

@@ -82,7 +82,7 @@ def detected_points(
     for number, path, scan, found in detected_in(scans, detector, n_pixels, line_times):
         if not found.board_found:
             remedy = found.remedy or f"add {number} to source.left_out, or label the scan"
-            raise InputError(str(path), found.doubt, "a scan of the whole board", remedy)
+            raise InputError(str(path), found.doubt, "a scan of the board", remedy)
         if found.doubt:
             log.warning("observation %d (%s) is left out: %s", number, path.name, found.doubt)
             continue

@@ -113,7 +113,7 @@ _ALL: Final = (
         offset_rad=_yaw(-_RIGHT_ANGLE_RAD),
         is_own_inverse=False,
     ),
-    Correction("yaw_plus_180", "yaw counts from south", offset_rad=_yaw(np.pi), is_own_inverse=False),
+    Correction("yaw_plus_180", "yaw counts from south", offset_rad=_yaw(np.pi)),
     Correction(
         "attitude_axes",
         "angles are of forward, left, up in east, north, up (ROS) where forward, right, down in north, east, down is "

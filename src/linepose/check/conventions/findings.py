@@ -57,8 +57,9 @@ def convention_findings(
     given = f"as given {_fit(examination.as_given)}"
     helping = _helping(platform, recording_at(0.0), reread, examination, sigmas)
     if not helping:
-        found = f"{given}; none of {n_tried} usual mistakes can be mended in the platform file so that they fit"
-        return [warning(_SUBJECT, found, "")]
+        likely = examination.best[0].mistake.name
+        found = f"{given}; it looks as if {likely}, which no key of the platform file mends so that they fit"
+        return [warning(_SUBJECT, found, "convert the log or the hand measurement accordingly, and check again")]
     (first, remedy), *others = helping
     found = f"it looks as if {first.mistake.name}: with that undone the points fit to {first.mean_error_px:.1f} px, "
     found += given
@@ -85,8 +86,8 @@ def _helping(
 
 
 def _says_the_same(remedy: Remedy, other: Remedy) -> bool:
-    """Whether one says of a key what the other says of it too."""
-    return any(other.values.get(key) == value for key, value in remedy.values.items())
+    """Whether one says all that the other says, of the same keys."""
+    return remedy.values == other.values
 
 
 def _helps(remedy: Remedy, undone: Explanation, platform: Platform, reread: Reread, sigmas: HandSigmas) -> bool:

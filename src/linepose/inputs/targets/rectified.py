@@ -4,6 +4,7 @@ What is found is carried back to raw pixels and lines, and refined there. From t
 found; the scan is rectified on it, and the target sought again.
 """
 
+import logging
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -24,6 +25,8 @@ from linepose.inputs.targets.match_print import match_print
 from linepose.inputs.targets.surfaces import candidate_surfaces, distances_m, farthest_m
 from linepose.survey.navigation_log import NavigationLog, interpolated_pose
 from linepose.survey.targets.base import Found, Picture, RectifiedSection
+
+log = logging.getLogger(__name__)
 
 _FEWEST_POINTS: Final = 6
 _ENOUGH: Final = 0.5  # of a target's points, with which the search for its plane ends
@@ -126,6 +129,10 @@ class RectifiedDetector:
             jacobian = in_scan.jacobian(board_m[row])
             position = match_print(scan.intensity, self.target, board_m[row], position, jacobian)
         kept = np.isfinite(position[:, 0])
+        if kept.sum() < min(_FEWEST_POINTS, len(board_m)):
+            return replace(_nothing("the print around the points does not fit the light"), board_found=True)
+        if not kept.all():
+            log.info("%s: %d of %d points are left out: the print does not fit", scan.name, (~kept).sum(), len(kept))
         row, position = row[kept], position[kept]
         order = np.argsort(row, kind="stable")
         ids = np.array(self.target.ids(), dtype=np.int64)[row[order]]
@@ -154,7 +161,11 @@ class RectifiedDetector:
         turned = self._with_rows_for_columns()
         if turned is not None and turned._searched(scan, poses) is not None:
             return f"a {kind} with rows and columns exchanged", "exchange target.rows and target.columns"
-        return f"no {kind} that is whole and large enough ({seen})", ""
+        remedy = "check hand_measured and the navigation's axes, or set source.target_range_m"
+        return (
+            f"no {kind} that is large enough ({seen})",
+            f"{remedy}; if none is there, leave the scan out (source.left_out)",
+        )
 
     def _with_rows_for_columns(self) -> "RectifiedDetector | None":
         target = self.target

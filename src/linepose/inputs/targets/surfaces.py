@@ -16,7 +16,7 @@ from linepose.inputs.rectified.surface import Surface
 from linepose.survey.targets.base import GridSection
 
 _STEP: Final = 1.4  # from one distance to the next
-_MOST_DISTANCES: Final = 12
+_MOST_DISTANCES: Final = 16
 _LEAST_VIEW: Final = 0.25  # sine of the angle at which a plane must be looked at
 _ALIKE: Final = 0.94  # cosine of the angle between planes that do for each other
 _DOWN: Final = np.array([0.0, 0.0, 1.0])

@@ -73,7 +73,8 @@ def write_rasters(
         f"{name}-glt.hdr",
         f"{name}.tif",
     ):  # of another pose or bands
-        (output / stale).unlink(missing_ok=True)
+        if not (output / stale).is_symlink():  # a link is refused where it is to be written
+            (output / stale).unlink(missing_ok=True)
     igm: Floats = np.memmap(output / f"{name}-igm.dat", dtype="<f8", mode="r", shape=(shape[0], N_PLACE, shape[1]))
     lattice = lattice_of(igm, section.cell_m, str(path), n_cores)
     if lattice is None:

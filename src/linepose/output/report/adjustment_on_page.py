@@ -17,7 +17,7 @@ from linepose.output.report.adjustment_words import (
 from linepose.output.report.sections import TableOnPage
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS
 from linepose.pipeline.calibration import INLIERS, Calibration
-from linepose.pipeline.evidence import navigation_error, pose_numbers
+from linepose.pipeline.evidence import position_error, pose_numbers
 
 
 def pose_table(anchor: str, calibration: Calibration) -> TableOnPage:
@@ -71,7 +71,7 @@ def sigma_table(anchor: str, levels: Mapping[str, pd.DataFrame]) -> TableOnPage:
     rows = []
     for name, table in levels.items():
         of_set = level_values(table)
-        factor, whole = of_set.loc["attitude"], navigation_error(of_set["value"])
+        factor, whole = of_set.loc["attitude"], position_error(of_set["value"])
         verdict = {True: "fit", False: "look wrong", None: "not known"}[attitude_fits(table)]
         cells = [f"{whole:.2f}", f"{whole * factor['value']:.2f}", _interval(*factor)]
         rows.append([set_in_words(name), *cells, verdict])

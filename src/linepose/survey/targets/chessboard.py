@@ -71,11 +71,25 @@ class ChessboardSection(RectifiedSection):
         seen, corners = cv2.findChessboardCornersSB(picture, size, flags=flags)
         if not seen or corners is None:
             return None
-        return Found(np.arange(size[0] * size[1]), np.asarray(corners, dtype=float).reshape(-1, 2))
+        place = np.asarray(corners, dtype=float).reshape(-1, 2)
+        turns = turns_of_grid(self.rows - 1, self.columns - 1, half_turn=True, quarter_turn=True)
+        numbered = [turn for turn in turns if self._begins_black(picture, place, turn)]
+        return Found(numbered[0], place) if numbered else None
+
+    def _begins_black(self, picture: Picture, place: Floats, row: NDArray[np.int64]) -> bool:
+        """Whether the first square is darker than the next, as printed, where places (n, 2) are of points (n,)."""
+        of_point = np.empty_like(place)
+        of_point[row] = place
+        first, along, across = of_point[0], of_point[1] - of_point[0], of_point[self.columns - 1] - of_point[0]
+        centres = first + 0.5 * np.array([-along - across, along - across])
+        u, v = np.rint(centres).astype(int).T
+        light = picture[v.clip(0, picture.shape[0] - 1), u.clip(0, picture.shape[1] - 1)]
+        return bool(light[0] < light[1])
 
     def symmetries(self) -> list[NDArray[np.int64]]:
-        """Every turn after which the corners lie alike: which one is meant, the colours do not always tell."""
-        return turns_of_grid(self.rows - 1, self.columns - 1, half_turn=True, quarter_turn=True)
+        """Every turn after which the squares look alike: which one is meant, nothing tells."""
+        odd, even = self.rows % 2 == 1, (self.rows + self.columns) % 2 == 0
+        return turns_of_grid(self.rows - 1, self.columns - 1, half_turn=even, quarter_turn=even and odd)
 
 
 def black_squares(n_rows: int, n_columns: int, square_m: float) -> tuple[Rectangle, ...]:

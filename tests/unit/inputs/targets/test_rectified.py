@@ -119,7 +119,7 @@ def test_ground_alone_has_no_target_and_one_too_small_is_told():
     light = np.random.default_rng(0).uniform(400, 900, ground.intensity.shape).astype(np.float32)
     empty = Scan(light, ground.time_us, "empty")
     found = RectifiedDetector(CHESSBOARD, hand_view(survey, 3.0))(empty)
-    assert "no chessboard that is whole and large enough (square_m takes 5 pixels up to 13.3 m away)" in found.doubt
+    assert "no chessboard that is large enough (square_m takes 5 pixels up to 13.3 m away)" in found.doubt
     found = RectifiedDetector(CHESSBOARD, hand_view(survey, 30.0))(empty)
     assert "too small to be seen from 30 m" in found.doubt
     assert not found.board_found

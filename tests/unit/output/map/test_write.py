@@ -73,5 +73,7 @@ def test_a_map_is_told_with_its_budget_and_what_was_counted():
     assert told.endswith("(made before)")
     centre, edge = budget_sentences(made)
     whole = made.budget.set_index(["place", "source"])["horizontal_m"].astype(float) * 1000
-    assert centre.startswith(f"  one sigma at the centre: {whole['centre', ALL]:.1f} mm; of that pose ")
+    assert centre.startswith(
+        f"  one sigma at the centre: {whole['centre', ALL]:.1f} mm; its sources, each alone: pose "
+    )
     assert f"navigation {whole['edge', 'navigation']:.1f}, " in edge

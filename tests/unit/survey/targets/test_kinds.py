@@ -112,3 +112,18 @@ def test_picture_shows_what_is_painted_last():
     assert white[12, 11]
     assert white[:, 23:].all()
     assert white.mean() == pytest.approx(1 - (400 - np.pi * 9) / (24 * 44), abs=0.01)
+
+
+@pytest.mark.parametrize(("rows", "columns", "n_ways"), [(7, 9, 2), (6, 9, 1), (9, 6, 1), (8, 8, 2), (7, 7, 4)])
+def test_corners_of_a_chessboard_are_numbered_by_its_colours(rows, columns, n_ways):
+    board = KINDS["chessboard"](rows=rows, columns=columns)
+    assert len(board.symmetries()) == n_ways
+    printed = (255 * board.artwork().picture(board.square_m / 12).astype(float)).clip(0, 255).astype(np.uint8)
+    for turn in range(4):
+        picture = np.ascontiguousarray(np.rot90(printed, turn))
+        found = board.find(picture)
+        place = found.place[np.argsort(found.row)]
+        along, across = place[1] - place[0], place[columns - 1] - place[0]
+        assert along[0] * across[1] > along[1] * across[0]  # not seen from behind
+        u, v = np.rint(place[0] - (along + across) / 2).astype(int)
+        assert picture[v, u] == 0
