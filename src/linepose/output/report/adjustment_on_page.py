@@ -17,7 +17,7 @@ from linepose.output.report.adjustment_words import (
 from linepose.output.report.sections import TableOnPage
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS
 from linepose.pipeline.calibration import INLIERS, Calibration
-from linepose.pipeline.evidence import position_error, pose_numbers
+from linepose.pipeline.evidence import pose_numbers, position_error
 
 
 def pose_table(anchor: str, calibration: Calibration) -> TableOnPage:
