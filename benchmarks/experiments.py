@@ -32,13 +32,13 @@ def line(*cells: object) -> None:
     print(f"{cells[0]:<10}" + "".join(f"{cell!s:>14}" for cell in cells[1:]))
 
 
-def kernel_share(sweep: Sweep, cells: range) -> float:
+def kernel_share(sweep: Sweep, likelihood: PublishedLikelihood, cells: range) -> float:
     """Share of the searches' processor time that evaluations take."""
     begun = time.process_time()
     table = sweep.rows("powell", cells)
     total = time.process_time() - begun
     model, poses = (
-        sweep.likelihood.without_cheirality(),
+        likelihood.without_cheirality(),
         table[[name for name in table if name[:2] in ("r_", "th")]].to_numpy(),
     )
     begun, rounds = time.process_time(), 2000 // len(poses)
@@ -60,7 +60,9 @@ def main() -> None:
     likelihood.log_likelihood(pose)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     share = kernel_share(
-        Sweep(LikelihoodEstimator(likelihood), pose, covariance, BasinSettings(n_distances=4, n_angles=5), 1), range(20)
+        Sweep(LikelihoodEstimator(likelihood), pose, covariance, BasinSettings(n_distances=4, n_angles=5), 1),
+        likelihood,
+        range(20),
     )
     print(f"Experiments on the 16 inliers; {cores} cores, wall time")
     print(f"(the kernel has {100 * share:.0f} % of the basin's processor time with Powell's method, to reach: 80 %)\n")

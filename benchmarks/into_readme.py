@@ -14,7 +14,6 @@ KEPT = (
     r" +observations +seconds",
     r"Powell +16",
     r"MCMC +16",
-    r"survey +[0-9]",
     r"The whole workflow",
 )
 
