@@ -81,7 +81,7 @@ def test_commands_of_the_page_on_targets_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"^```bash\n(.*?)^```$", (DOCS / "targets.md").read_text(), re.MULTILINE | re.DOTALL)
     rows = [row for block in blocks for row in block.splitlines()]
-    assert len(rows) == 5
+    assert len(rows) == 6
     for row in rows:
         ran = CliRunner().invoke(app, shlex.split(row)[1:])
         assert ran.exit_code == 0, ran.output
