@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 def is_arcgis(text: str) -> bool:
     """Whether the text of a header says rows and columns as ArcGIS does."""
-    return all(re.search(rf"^\s*{key}\s+\d", text, re.IGNORECASE | re.MULTILINE) for key in ("NROWS", "NCOLS"))
+    return all(re.search(rf"^[ \t]*{key}[ \t]+\d", text, re.IGNORECASE | re.MULTILINE) for key in ("NROWS", "NCOLS"))
 
 
 def arcgis_header(text: str, path: Path) -> EnviHeader:
@@ -69,7 +69,7 @@ class _Words:
         """A whole number within these bounds; the default where there is none."""
         if key not in self.values and default is not None:
             return default
-        word = self.values[key][0]
+        word = self.values.get(key, ("nothing", 1))[0]
         if not re.fullmatch(r"\d{1,18}", word) or not least <= int(word) <= most:
             self.refuse(key, repr(word[:60]), f"a whole number from {least} to {most}", "restore the header")
         return int(word)

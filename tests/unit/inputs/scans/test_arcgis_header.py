@@ -75,3 +75,10 @@ def test_data_file_that_a_key_of_the_header_names(tmp_path, cube):
     (tmp_path / "cube_7.xyz").unlink()
     with pytest.raises(InputError, match=r"scan.hdr: found no file cube_7.xyz, which its key `data file` names"):
         scan_size(tmp_path / "scan.hdr")
+
+
+def test_a_number_on_the_next_row_is_not_the_key_s(tmp_path, cube):
+    path = write(tmp_path, cube)
+    path.write_text(path.read_text().replace(f"NCOLS         {PIXELS}", f"NCOLS\n        {PIXELS}"))
+    with pytest.raises(InputError, match=r"scan\.hdr"):
+        scan_size(path)
