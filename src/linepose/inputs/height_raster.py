@@ -41,6 +41,9 @@ def read_heights(path: Path, key: str) -> HeightRaster:
                 found = f"{raster.count} bands of {raster.width} x {raster.height} cells"
                 expected = f"one band of at least {_SMALLEST} x {_SMALLEST} and at most {_LARGEST} cells"
                 raise InputError(str(path), found, expected, "cut the survey's part of one band out of it")
+            if not np.isfinite(raster.transform.determinant) or raster.transform.is_degenerate:
+                found = f"cells without a size ({', '.join(f'{value:g}' for value in tuple(raster.transform)[:6])})"
+                raise InputError(str(path), found, "a size and place of the cells", f"restore it, or correct {key}")
             heights = raster.read(1, masked=True).astype(np.float32).filled(np.nan)
             made = HeightRaster(heights, raster.transform, raster.crs)
     except RasterioIOError as error:

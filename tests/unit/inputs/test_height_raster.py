@@ -56,3 +56,10 @@ def test_what_is_no_height_model_is_told_in_one_line(tmp_path, make, told):
     make(tmp_path / "dem.tif")
     with pytest.raises(InputError, match=rf"dem\.tif: .*{told}"):
         read_heights(tmp_path / "dem.tif", "map.dem")
+
+
+def test_cells_without_a_size_are_told_in_one_line(tmp_path):
+    path = tmp_path / "dem.asc"
+    path.write_text("ncols 3\nnrows 3\nxllcorner 151\nyllcorner -33\ncellsize 0\n1 2 3\n4 5 6\n7 8 9\n")
+    with pytest.raises(InputError, match=r"dem\.asc: found cells without a size"):
+        read_heights(path, "points.ground.dem")
