@@ -3,6 +3,7 @@
 A move is what `pose_difference` has: position (m) along body axes, then turn (rad) about them.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -93,6 +94,24 @@ def change_of_shrunk(difference: Floats, covariance: Floats, seen: Floats) -> Po
     """The same where a prior has shrunk the second estimate, so that a move x shows as `seen` (6, 6) times x."""
     information = _inverse(covariance)
     return PoseChange(seen.T @ information @ seen, seen.T @ information @ difference)
+
+
+def covariance_of_difference(covariances: Sequence[Floats], prior: Floats) -> Floats:
+    """Covariance (6, 6) of the difference of two estimates with these, of which one prior (6, 6) is a part.
+
+    Each is `S = (L + P^-1)^-1`, L the information of its data; what the prior errs by moves it by `1 - S L` times
+    that, and cancels where both do so alike.
+    """
+    root = np.linalg.cholesky(prior)
+    total, moved = np.zeros((6, 6)), np.zeros((6, 6))
+    for sign, covariance in zip((1.0, -1.0), covariances, strict=True):
+        scaled = root.T @ np.linalg.inv(covariance) @ root - np.eye(6)
+        values, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
+        values = np.maximum(values, 0.0)  # draws of the posterior may be wider than the prior by chance
+        own = root @ vectors
+        total += (own * (values / (1 + values) ** 2)) @ own.T
+        moved += sign * (own * (values / (1 + values))) @ np.linalg.solve(root.T, vectors).T
+    return total + moved @ prior @ moved.T
 
 
 def _inverse(covariance: Floats) -> Floats:

@@ -9,7 +9,14 @@ import pandas as pd
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.estimation.pixel_shift import Mounted, pixel_shift, shift_covariance
-from linepose.estimation.pose_change import GROUPS, MOVES, PER_MOVE, PoseChange, change_of_estimates
+from linepose.estimation.pose_change import (
+    GROUPS,
+    MOVES,
+    PER_MOVE,
+    PoseChange,
+    change_of_estimates,
+    covariance_of_difference,
+)
 from linepose.geometry.distance import check_covariance, difference_covariance, pose_difference
 from linepose.pipeline.calibration import HAND_MEASURED, Calibration
 
@@ -103,24 +110,6 @@ def compare(first: Calibration, second: Calibration, range_m: float) -> Comparis
         shared,
         _n_shared_measurements(first, second),
     )
-
-
-def covariance_of_difference(covariances: list[Floats], prior: Floats) -> Floats:
-    """Covariance (6, 6) of the difference of two estimates with these, of which one prior (6, 6) is a part.
-
-    Each is `S = (L + P^-1)^-1`, L the information of its data; what the prior errs by moves it by `1 - S L` times
-    that, and cancels where both do so alike.
-    """
-    root = np.linalg.cholesky(prior)
-    total, moved = np.zeros((6, 6)), np.zeros((6, 6))
-    for sign, covariance in zip((1.0, -1.0), covariances, strict=True):
-        scaled = root.T @ np.linalg.inv(covariance) @ root - np.eye(6)
-        values, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
-        values = np.maximum(values, 0.0)  # draws of the posterior may be wider than the prior by chance
-        own = root @ vectors
-        total += (own * (values / (1 + values) ** 2)) @ own.T
-        moved += sign * (own * (values / (1 + values))) @ np.linalg.solve(root.T, vectors).T
-    return total + moved @ prior @ moved.T
 
 
 def _n_shared_measurements(first: Calibration, second: Calibration) -> int:

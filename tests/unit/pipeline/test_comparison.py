@@ -9,10 +9,11 @@ from numpy.testing import assert_allclose
 
 import linepose
 from linepose.cli.compare import lines_of
+from linepose.estimation.pose_change import covariance_of_difference
 from linepose.geometry.distance import difference_covariance
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.pipeline.calibration import Calibration
-from linepose.pipeline.comparison import compare, covariance_of_difference
+from linepose.pipeline.comparison import compare
 from linepose.pipeline.results import Results
 from unit import made_up
 
