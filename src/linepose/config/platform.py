@@ -64,7 +64,8 @@ class NavigationSection(Settings):
     corrections: tuple[CorrectionName, ...] = Field(
         (),
         description="What the log has otherwise than [conventions.md](conventions.md) says and no key of its format "
-        f"tells, undone in this order after reading; `linepose check` names it. {MEANINGS_OF_CORRECTIONS}.",
+        "tells, undone in this order after reading, in poses and covariances alike (also of `source.covariances`); "
+        f"`linepose check` names it. {MEANINGS_OF_CORRECTIONS}.",
     )
 
     @field_validator("covariance_columns")

@@ -100,6 +100,11 @@ def test_new_takes_every_navigation_format(here, name):
         ("a.gps", "#INSPVAXA,COM1,0,73.5,FINESTEERING,1695,309428.0\n", {"format": "novatel"}),
         ("scan.nav", "$GPGGA,100000.00,5000.0000,N,00800.0000,E,4,12,0.8,52.3,M,47.7,M,,\n", {"format": "nmea"}),
         ("run.bag", "", {"format": "rosbag"}),
+        (
+            "a.csv",
+            "time,lat,lon,alt,roll,pitch,yaw\n1700000000,50,8,99,1,2,90\n",
+            {"format": "table", "coordinates": "geodetic", "angle_unit": "degrees", "time_unit": "s"},
+        ),
         ("run.lcf", "", {"format": "resonon"}),
         ("sbet.out", "", {"format": "sbet"}),
     ],

@@ -18,6 +18,7 @@ from linepose.inputs.local_frame import projected_frame, tangent_frame
 from linepose.inputs.navigation import presets
 from linepose.inputs.navigation.attitude_log import AttitudeSection, with_attitudes
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
+from linepose.inputs.navigation.named_columns import keys_by_names
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
 from linepose.inputs.navigation.table_axes import keys_against
@@ -135,8 +136,13 @@ def read(section: TableSection, folder: Path) -> NavigationRecord:
     return record if frame is None else replace(record, crs=frame.crs, origin=frame.origin)
 
 
+def _recognised(path: Path) -> dict[str, Any] | None:
+    """The keys of a log by its preset, else by the names of its columns; None where neither tells them."""
+    return presets.recognised(path) or keys_by_names(path)
+
+
 FORMAT: Final = NavigationFormat(
-    "table", TableSection, read, has_covariances=False, recognise=presets.recognised, keys_against=keys_against
+    "table", TableSection, read, has_covariances=False, recognise=_recognised, keys_against=keys_against
 )
 
 
