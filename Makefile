@@ -7,7 +7,7 @@ STAMP := .venv/installed
 
 SHELL := bash
 
-.PHONY: help environment reproduce test check types style docs bench readme-bench reference images lock clean
+.PHONY: help environment reproduce test slurm-test check types style docs bench readme-bench reference images lock clean
 
 help: ## What can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -25,6 +25,9 @@ reproduce: $(STAMP) ## Run every experiment; results go to results/
 
 test: $(STAMP) ## Run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
+
+slurm-test: $(STAMP) ## The tiny project on a SLURM of this machine alone; installs it: as root on Debian 12
+	PYTHONPATH=tests/workflow $(BIN)/python tests/slurm
 
 check: style types ## Style, the workflow's own lint, and types
 

@@ -14,6 +14,8 @@ rule compile:
         "results/logs/compile_{noise_model}.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         code=script_digest("compile"),
     script:
@@ -42,7 +44,7 @@ rule adjust:  # all at once: no observation is removed, and the posterior needs 
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
+        **LIGHT,
     params:
         platform=settings,
         adjustment=section("adjustment"),
@@ -66,6 +68,8 @@ rule reject_outliers:
         platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         outliers=section("outliers"),
@@ -86,6 +90,8 @@ rule optimise:
         platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         search=section("search"),
@@ -112,7 +118,7 @@ rule sample:
         "../../environment.yml"
     threads: 2
     resources:
-        mem_mb=2000,
+        **LIGHT,
     params:
         platform=settings,
         sampling=section("sampling"),
@@ -135,6 +141,8 @@ rule diagnose:
         platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         sampling=section("sampling"),
@@ -156,6 +164,8 @@ rule residuals:
         platform=names_of(REMOVING_PLATFORMS),
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         code=script_digest("residuals"),

@@ -27,8 +27,7 @@ for EXPERIMENT in EXPERIMENTS:
             "../../environment.yml"
         threads: EXPERIMENT.cores or workflow.cores or 1
         resources:
-            mem_mb=2000,
-            runtime=600 if EXPERIMENT.in_batches else 60,
+            **(BATCHES if EXPERIMENT.in_batches else LIGHT),
         params:
             **experiment_parameters(EXPERIMENT),
         script:

@@ -17,6 +17,8 @@ for key in PROJECT.datasets:
             f"results/logs/fetch_{key}.log",
         conda:
             "../../environment.yml"
+        resources:
+            **LIGHT,
         params:
             dataset=key,
             searched=STUDY.data_folders,
@@ -34,6 +36,8 @@ rule check_data:
         "results/logs/check_data_{dataset}.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         folder=lambda wildcards: str(PROJECT.folders[wildcards.dataset]),
         sha256=lambda wildcards: PROJECT.sums(wildcards.dataset),
@@ -51,6 +55,8 @@ rule check_readable:
         "results/logs/{platform}/check_readable.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         folder=recorded_folder,
@@ -69,6 +75,8 @@ rule extract:
         "results/logs/{platform}/extract.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         folder=recorded_folder,
@@ -88,6 +96,8 @@ rule associate:
         "results/logs/{platform}/associate.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         folder=recorded_folder,
@@ -109,6 +119,8 @@ rule know_points:
         platform=names_of(KNOWING_PLATFORMS),
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         map_frame=map_frame,

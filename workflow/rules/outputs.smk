@@ -30,7 +30,7 @@ rule figures:
     conda:
         "../../environment.yml"
     resources:
-        mem_mb=2000,
+        **LIGHT,
     params:
         platform=lambda wildcards: PROJECT.platforms[wildcards.platform].model_dump(
             mode="json"
@@ -59,6 +59,8 @@ rule report:
         "results/logs/{platform}/report.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=lambda wildcards: PROJECT.platforms[wildcards.platform].model_dump(
             mode="json"
@@ -83,6 +85,8 @@ rule study_report:
         "results/logs/study_report.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         others=other_summaries,
         study=STUDY.model_dump(mode="json", exclude={"platforms"}),

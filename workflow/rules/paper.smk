@@ -47,6 +47,8 @@ rule regression:
         "results/logs/regression.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platforms=REGRESSED,
         code=script_digest("regression"),
@@ -63,6 +65,8 @@ rule check_regression:
         "results/logs/check_regression.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         left_out=LEFT_OUT,
         code=script_digest("check_regression"),
@@ -97,6 +101,8 @@ rule published_tables:
         "results/logs/published_tables.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=FIELD,
         folder=lambda wildcards, output: str(Path(output[0]).parent),
@@ -124,6 +130,8 @@ rule paper_page:
         "results/logs/paper_page.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         left_out=LEFT_OUT,
         code=script_digest("paper_page"),

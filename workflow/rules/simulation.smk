@@ -18,7 +18,7 @@ rule simulate:
         "../../environment.yml"
     threads: 2
     resources:
-        mem_mb=2000,
+        **LIGHT,
     params:
         camera=lambda wildcards: settings(wildcards)["camera"],
         simulation=lambda wildcards: settings(wildcards)["simulation"],
@@ -42,6 +42,8 @@ rule measure_extraction:
         platform=names_of(PROJECT.simulated),
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         platform=settings,
         code=script_digest("measure_extraction"),
@@ -54,27 +56,59 @@ wildcard_constraints:
     noise_model="[a-z]+",
 
 
+scattergather:
+    coverage=4,
+
+
+COVERED = {  # what a cell's surveys depend on
+    "platform": settings,
+    "regime": lambda wildcards: STUDY.coverage.regimes[wildcards.regime].model_dump(
+        mode="json", exclude={"noise_models"}
+    ),
+    "study": STUDY.coverage.model_dump(mode="json", include={"n_surveys", "seed"}),
+}
+
+
+rule coverage_part:  # a share of a cell's surveys, on one core: a job of its own wherever jobs are run
+    input:
+        compiled="results/compiled/{noise_model}.txt",
+    output:
+        temp(
+            "results/coverage/parts/{platform}/{regime}/{noise_model}/{scatteritem}.parquet"
+        ),
+    log:
+        "results/logs/coverage/{platform}/{regime}/{noise_model}/{scatteritem}.log",
+    benchmark:
+        "results/benchmarks/coverage/{platform}/{regime}/{noise_model}/{scatteritem}.tsv"
+    conda:
+        "../../environment.yml"
+    resources:
+        **LONG,
+    params:
+        **COVERED,
+        batch_size=STUDY.coverage.batch_size,
+        work="results/coverage/work/{platform}-{regime}-{noise_model}/{scatteritem}",
+        code=script_digest("coverage_part"),
+    script:
+        "../../scripts/coverage_part.py"
+
+
 rule coverage_cell:
+    input:
+        parts=gather.coverage(
+            "results/coverage/parts/{{platform}}/{{regime}}/{{noise_model}}/{scatteritem}.parquet"
+        ),
     output:
         "results/coverage/cells/{platform}/{regime}/{noise_model}.parquet",
     log:
         "results/logs/coverage/{platform}/{regime}/{noise_model}.log",
-    benchmark:
-        "results/benchmarks/coverage/{platform}/{regime}/{noise_model}.tsv"
+    localrule: True  # it puts tables together
     conda:
         "../../environment.yml"
-    threads: workflow.cores or 1
     resources:
-        mem_mb=2000,
-        runtime=600,
+        **LIGHT,
     params:
-        platform=settings,
-        regime=lambda wildcards: STUDY.coverage.regimes[wildcards.regime].model_dump(
-            mode="json", exclude={"noise_models"}
-        ),
-        study=STUDY.coverage.model_dump(mode="json", include={"n_surveys", "seed"}),
-        batch_size=STUDY.coverage.batch_size,
-        work="results/coverage/work/{platform}-{regime}-{noise_model}",
+        **COVERED,
         code=script_digest("coverage_cell"),
     script:
         "../../scripts/coverage_cell.py"
@@ -96,6 +130,8 @@ rule coverage:
         "results/logs/coverage/coverage.log",
     conda:
         "../../environment.yml"
+    resources:
+        **LIGHT,
     params:
         pools=STUDY.coverage.pools,
         code=script_digest("coverage_summary"),

@@ -4,6 +4,7 @@ A batch's table must depend on the batch alone: then neither the number of cores
 the work was interrupted shows in the result.
 """
 
+import contextlib
 import hashlib
 import json
 import multiprocessing
@@ -43,13 +44,20 @@ def run_batches(task: Task, names: Sequence[str], folder: Path, schema: pa.Schem
         for name, table in _made(task, waiting, n_processes):
             write_table(table, _file(folder, name), schema)
             bar.update()
-    return pd.concat([read_table(_file(folder, name), schema) for name in names], ignore_index=True)
+    tables = [read_table(_file(folder, name), schema) for name in names]
+    return pd.concat(tables, ignore_index=True) if tables else schema.empty_table().to_pandas()
 
 
 def batch_ranges(count: int, size: int) -> dict[str, range]:
     """Consecutive ranges of at most `size` that cover 0 to `count`, by a name that sorts like them."""
     ranges = [range(first, min(first + size, count)) for first in range(0, count, size)]
     return {f"{cells.start:06d}-{cells.stop:06d}": cells for cells in ranges}
+
+
+def share_of(count: int, scatter_item: str) -> range:
+    """The consecutive numbers of 0 to `count` that fall to a part, named as Snakemake names it: "2-of-4"."""
+    part, parts = (int(number) for number in scatter_item.split("-of-"))
+    return range(count * (part - 1) // parts, count * part // parts)
 
 
 def inputs_digest(settings: Mapping[str, Any], files: Iterable[Path | str]) -> str:
@@ -64,7 +72,7 @@ def inputs_digest(settings: Mapping[str, Any], files: Iterable[Path | str]) -> s
 def remove_finished(folder: Path) -> None:
     """Remove the batches of work whose result is written, and those of earlier work that was never finished."""
     shutil.rmtree(folder.parent, ignore_errors=True)
-    if not any(folder.parent.parent.iterdir()):
+    with contextlib.suppress(OSError):  # what others keep there, or another job that has removed it
         folder.parent.parent.rmdir()
 
 

@@ -16,8 +16,8 @@ from linepose.tables import read_mark
 NO_SETTINGS: Final = frozenset({"code", "module", "work", "folder", "file", "searched", "batch_size"})
 """Names of rules' parameters, and of keys in them, that change no number: where files stand, how work is shared out."""
 
-FOR_THE_ORDER_ALONE: Final = frozenset({"compiled", "readable"})
-"""Names of rules' inputs whose content changes no number."""
+FOR_THE_ORDER_ALONE: Final = frozenset({"compiled", "readable", "parts"})
+"""Names of rules' inputs whose content changes no number beside the rule's own parameters."""
 
 
 @dataclass(frozen=True)

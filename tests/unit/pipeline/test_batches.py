@@ -13,7 +13,8 @@ import pytest
 
 from linepose.errors import InputError
 from linepose.pipeline import batches
-from linepose.pipeline.batches import batch_ranges, inputs_digest, remove_finished, run_batches
+from linepose.pipeline.batches import batch_ranges, inputs_digest, remove_finished, run_batches, share_of
+from linepose.tables import write_table
 
 SCHEMA = pa.schema([pa.field("batch", pa.string(), nullable=False), pa.field("value", pa.float64(), nullable=False)])
 NAMES = [f"b{k}" for k in range(6)]
@@ -105,6 +106,19 @@ def test_ranges_cover_all_once_in_the_order_of_their_names(size):
     assert [cell for cells in ranges.values() for cell in cells] == list(range(30))
     assert list(ranges) == sorted(ranges)
     assert all(len(cells) <= size for cells in ranges.values())
+
+
+@pytest.mark.parametrize(("count", "parts"), [(200, 4), (7, 3), (2, 4), (1, 1)])
+def test_shares_cover_all_once_and_are_alike_in_size(count, parts):
+    shares = [share_of(count, f"{part}-of-{parts}") for part in range(1, parts + 1)]
+    assert [number for share in shares for number in share] == list(range(count))
+    assert max(map(len, shares)) - min(map(len, shares)) <= 1
+
+
+def test_no_batch_is_an_empty_table(tmp_path):
+    found = run_batches(lambda name: pd.DataFrame(), [], tmp_path, SCHEMA, 1)
+    assert found.empty
+    write_table(found, tmp_path / "empty.parquet", SCHEMA)
 
 
 def test_digest_tells_settings_and_contents_apart(tmp_path):

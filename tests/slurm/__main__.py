@@ -1,0 +1,48 @@
+"""The tiny project and a coverage cell on SLURM and locally: the same bytes. `make slurm-test`."""
+
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import cluster
+from project import CELL, LOCAL, NOT_COMPARED, SLURM, differences, results, run, tiny
+
+SLOWER_AT_MOST = 1.3  # coverage cell, on SLURM against locally
+N_SURVEYS = int(os.environ.get("N_SURVEYS", "200"))  # of the coverage cell
+
+
+def main() -> None:
+    """Run all; prints a line for each thing that holds, ends with one for the first that does not."""
+    cluster.install()
+    with tempfile.TemporaryDirectory(prefix="slurm-test-") as name:
+        folder = Path(name)
+        with cluster.running(folder):
+            same_bytes(folder)
+
+
+def same_bytes(folder: Path) -> None:
+    """The whole project in two folders; the coverage cell timed by itself, as what comes before it is made already."""
+    local, slurm = tiny(folder / "local", N_SURVEYS), tiny(folder / "slurm", N_SURVEYS)
+    whole = [run(local, *LOCAL), run(slurm, *SLURM)]
+    cell = [run(local, *LOCAL, CELL), run(slurm, *SLURM, CELL)]
+    run(local, *LOCAL, "coverage")
+    run(slurm, *SLURM, "coverage")
+    unlike = differences(local, slurm)
+    if unlike:
+        sys.exit(f"slurm-test: found other bytes in {', '.join(unlike)}, expected those of the local run")
+    left_out = " and ".join(f"results/{one}" for one in NOT_COMPARED)
+    tell(f"{len(results(slurm))} results are the same bytes; {left_out} are not compared")
+    tell(f"tiny project: {whole[0]:.0f} s locally, {whole[1]:.0f} s on SLURM")
+    tell(
+        f"coverage cell of {N_SURVEYS} surveys: {cell[0]:.0f} s locally, {cell[1]:.0f} s on SLURM; ", cell[1] / cell[0]
+    )
+
+
+def tell(text: str) -> None:
+    """Print a line."""
+    print(f"slurm-test: {text}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

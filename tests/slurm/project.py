@@ -1,0 +1,63 @@
+"""The tiny project, run locally and on SLURM, and its results compared."""
+
+import hashlib
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from cluster import CORES
+from tiny_project import QUICK, ROOT, STUDY, Project
+
+NOT_COMPARED = ("logs", "benchmarks")  # of results/: what was told, and how long it took
+CELL = "results/coverage/cells/tiny/white/published.parquet"
+BASIN = {"basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]}}
+LOCAL = ["--cores", str(CORES)]
+SLURM = [
+    *("--profile", str(ROOT / "profiles" / "slurm"), "--cores", str(CORES), "--max-threads", str(CORES)),
+    *("--latency-wait", "10", "--slurm-init-seconds-before-status-checks", "2"),
+]
+
+
+def tiny(folder: Path, n_surveys: int) -> Path:
+    """A new folder with the tiny project: a platform with a sweep, and a coverage study of one cell."""
+    regimes = {"white": {"white_level": 1.0, "noise_models": ["published"]}}
+    study = STUDY | {"coverage": {"n_surveys": n_surveys, "batch_size": 5, "regimes": regimes}}
+    folder.mkdir()
+    Project(folder).configure(study, {"tiny": QUICK | {"experiments": {**QUICK["experiments"], **BASIN}}})
+    return folder
+
+
+def start(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
+    """Snakemake begun in a project's folder; its messages go to run.log there."""
+    environment = os.environ | {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), *arguments]
+    with (folder / "run.log").open("a") as log:
+        return subprocess.Popen(command, cwd=folder, env=environment, stdout=log, stderr=log, text=True)
+
+
+def run(folder: Path, *arguments: str) -> float:
+    """Run Snakemake there; the time that it took, in seconds. Ends the test where it fails."""
+    begun = time.monotonic()
+    if start(folder, *arguments).wait(timeout=3600):
+        sys.exit(f"slurm-test: {' '.join(arguments)} failed in {folder}:\n{(folder / 'run.log').read_text()}")
+    return time.monotonic() - begun
+
+
+def results(folder: Path) -> dict[str, str]:
+    """Digest of each result by its path."""
+    root = folder / "results"
+    files = [path for path in sorted(root.rglob("*")) if path.is_file()]
+    named = {path.relative_to(root): path for path in files}
+    return {
+        str(name): hashlib.sha256(path.read_bytes()).hexdigest()
+        for name, path in named.items()
+        if name.parts[0] not in NOT_COMPARED
+    }
+
+
+def differences(folder: Path, other: Path) -> list[str]:
+    """Names of the results that two projects do not have alike."""
+    one, two = results(folder), results(other)
+    return sorted(name for name in one.keys() | two.keys() if one.get(name) != two.get(name))
