@@ -124,6 +124,6 @@ def write_adjusted_results(folder: Path) -> None:
     write_table(optima().query("stage == 'inliers'"), folder / "optima.parquet", OPTIMA)
     write_table(pose().query("stage in ('hand_measured', 'inliers')"), folder / "pose.parquet", POSE)
     write_table(diagnostics().assign(**told), folder / "diagnostics.parquet", DIAGNOSTICS)
-    for name in ("levels", "adjusted_views", "adjusted_measurements"):
+    for name in ("levels", "adjusted_intrinsics", "adjusted_views", "adjusted_measurements"):
         make, schema = made_up_adjustment.BESIDE[name]
         write_table(make(), folder / f"{name}.parquet", schema)

@@ -6,6 +6,7 @@ import pandas as pd
 from linepose.adjustment.levels import LEVEL_NAMES, LOG_SIGMA, MEDIAN
 from linepose.experiments.adjustment_beside import ADJUSTED_SPLITS, ADJUSTMENT
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.pipeline.adjusted_intrinsics import INTRINSICS, AdjustedIntrinsics, intrinsics_table
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, LEVELS, MEASUREMENTS, VIEWS
 
 VALUES = dict(zip(LEVEL_NAMES, (0.8, 0.01, 0.6, 0.23, 0.62, 13.0, 0.4), strict=True))  # drift and constant make 1.0
@@ -41,6 +42,13 @@ def adjusted_measurements() -> pd.DataFrame:
     return table.assign(weight=weight, normalised_along=normal, normalised_across=4.0 * (point == 3))
 
 
+def adjusted_intrinsics() -> pd.DataFrame:
+    """A principal point 4 px off the file's, known to 0.3 px; the camera's y turn follows it."""
+    turn = np.zeros((6, 2))
+    turn[4, 0] = 1.0 / 1108.0
+    return intrinsics_table(AdjustedIntrinsics(327.0, 8.25e-3, np.diag([0.3**2, 1e-5**2]), turn))
+
+
 def adjustment() -> pd.DataFrame:
     """All observations, the accepted ones, and another platform, whose attitude sigmas fit as they are."""
     rows = []
@@ -74,6 +82,7 @@ def adjusted_splits() -> pd.DataFrame:
 
 BESIDE = {
     "levels": (levels, LEVELS),
+    "adjusted_intrinsics": (adjusted_intrinsics, INTRINSICS),
     "adjusted_views": (adjusted_views, VIEWS),
     "adjusted_measurements": (adjusted_measurements, MEASUREMENTS),
     "adjustment": (adjustment, ADJUSTMENT),

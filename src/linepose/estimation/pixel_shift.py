@@ -9,7 +9,7 @@ from linepose.arrays import Floats
 from linepose.geometry.camera import Camera, normalised_from_pixel
 from linepose.geometry.rotations import matrix_from_rotation_vector
 
-_STEPS: Final = np.array([1e-4] * 3 + [1e-5] * 3)  # of a move, for derivatives (m, rad)
+_STEPS: Final = np.array([1e-4] * 3 + [1e-5] * 3 + [1e-2, 1e-7])  # for derivatives: of a move (m, rad), px, m
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,13 +38,14 @@ def pixel_shift(first: Mounted, second: Mounted, pixel: float, range_m: float) -
 def shift_covariance(
     first: Mounted, second: Mounted, pixel: float, range_m: float, difference_covariance: Floats
 ) -> Floats:
-    """Covariance (2, 2) of the shift, from that of the poses' difference (6, 6): m, and turn about body axes."""
-    slopes = np.empty((2, 6))
+    """Covariance (2, 2) of the shift, from that of the difference (8, 8).
+
+    The difference is that of the poses, m and turn about body axes, of the principal points (px) and the focal lengths
+    (m).
+    """
+    slopes = np.empty((2, len(_STEPS)))
     for axis, step in enumerate(_STEPS):
-        ends = [
-            pixel_shift(first, Mounted(second.camera, _moved(second.pose, sign * step, axis)), pixel, range_m)
-            for sign in (1.0, -1.0)
-        ]
+        ends = [pixel_shift(first, _moved(second, sign * step, axis), pixel, range_m) for sign in (1.0, -1.0)]
         slopes[:, axis] = (ends[0] - ends[1]) / (2 * step)
     return slopes @ difference_covariance @ slopes.T
 
@@ -53,10 +54,16 @@ def _ray(camera: Camera, pixel: float) -> Floats:
     return np.array([float(normalised_from_pixel(camera, pixel)), 0.0, 1.0])
 
 
-def _moved(pose: Floats, step: float, axis: int) -> Floats:
-    """The pose (6,) after a step along or about one body axis."""
+def _moved(mounted: Mounted, step: float, axis: int) -> Mounted:
+    """The camera after a step along or about one body axis, or of its principal point (px) or focal length (m)."""
     from scipy.spatial.transform import Rotation
 
-    move = step * np.eye(6)[axis]
-    turned = Rotation.from_rotvec(move[3:]) * Rotation.from_rotvec(pose[3:])
-    return np.concatenate([pose[:3] + move[:3], turned.as_rotvec()])
+    camera, pose = mounted.camera, mounted.pose
+    move = step * np.eye(len(_STEPS))[axis]
+    turned = Rotation.from_rotvec(move[3:6]) * Rotation.from_rotvec(pose[3:])
+    return Mounted(
+        camera.replaced(
+            principal_point_px=camera.principal_point_px + move[6], focal_length_m=camera.focal_length_m + move[7]
+        ),
+        np.concatenate([pose[:3] + move[:3], turned.as_rotvec()]),
+    )

@@ -5,6 +5,7 @@ from typing import Final
 import pyarrow as pa
 
 from linepose.estimation.outliers import OUTLIERS
+from linepose.pipeline.adjusted_intrinsics import INTRINSICS
 from linepose.pipeline.residual_tables import ESTIMATED_POINTS, RESIDUALS
 from linepose.pipeline.stages import DIAGNOSTICS, OPTIMA, POSE
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
@@ -42,4 +43,9 @@ STAGES: Final = {
     "residuals": RESIDUALS,
     "estimated_points": ESTIMATED_POINTS,
 }
-ADJUSTED: Final = {"levels": LEVELS, "adjusted_views": VIEWS, "adjusted_measurements": MEASUREMENTS}
+ADJUSTED: Final = {
+    "levels": LEVELS,
+    "adjusted_intrinsics": INTRINSICS,
+    "adjusted_views": VIEWS,
+    "adjusted_measurements": MEASUREMENTS,
+}

@@ -15,6 +15,7 @@ from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.diagnostics import split_r_hat
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Residuals
+from linepose.pipeline.adjusted_intrinsics import AdjustedIntrinsics, intrinsics_table
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, NORMALISED_COLUMNS, STAGE
 from linepose.pipeline.residual_tables import point_rows, residual_rows
 from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS
@@ -47,8 +48,9 @@ def adjusted_tables(estimator: AdjustmentEstimator, seed: int) -> dict[str, pd.D
 def error_tables(
     survey: Survey, found: Adjustment, errors: Residuals, settings: AdjustmentSection
 ) -> dict[str, pd.DataFrame]:
-    """What the errors were: levels, and each view's and each measurement's corrections and weight."""
+    """What the errors were: levels, intrinsics, and each view's and each measurement's corrections and weight."""
     return {
+        "adjusted_intrinsics": intrinsics_table(_intrinsics(found)),
         "levels": level_table(found, settings),
         "adjusted_views": view_table(survey, found, errors),
         "adjusted_measurements": measurement_table(survey, found),
@@ -101,6 +103,12 @@ def measurement_table(survey: Survey, found: Adjustment) -> pd.DataFrame:
             "weight": found.measurement_weight[row, point],
             **dict(zip(NORMALISED_COLUMNS, found.normalised[row, point].T, strict=True)),
         }
+    )
+
+
+def _intrinsics(found: Adjustment) -> AdjustedIntrinsics:
+    return AdjustedIntrinsics(
+        found.principal_point_px, found.focal_length_m, found.intrinsics_covariance, found.pose_by_intrinsics
     )
 
 

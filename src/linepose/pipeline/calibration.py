@@ -17,6 +17,7 @@ from linepose.estimation.outliers import OUTLIERS, OutlierSettings, removal_orde
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS, euler_covariance, euler_pose
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
+from linepose.pipeline.adjusted_intrinsics import INTRINSICS, AdjustedIntrinsics, intrinsics_from_table
 from linepose.pipeline.adjusted_schemas import ADJUSTED, LEVELS, MEASUREMENTS, VIEWS
 from linepose.pipeline.exports.options import ExportOptions
 from linepose.pipeline.exports.write import export_calibration
@@ -138,6 +139,23 @@ class Calibration:
         if self.stage == HAND_MEASURED:
             return "sigmas of the hand measurement"
         return f"{len(self.results.table(f'mcmc/{self.stage}', SAMPLES))} samples"
+
+    @property
+    def is_adjusted(self) -> bool:
+        """Whether the pose is an adjustment's, with which intrinsics, levels and corrections were found."""
+        return self.stage == INLIERS and not noise_model(self.noise_model).removes_outliers
+
+    @cached_property
+    def intrinsics(self) -> AdjustedIntrinsics | None:
+        """Principal point and focal length that were estimated with the pose; None where the pose is not adjusted."""
+        return (
+            intrinsics_from_table(self.results.table("adjusted_intrinsics", INTRINSICS)) if self.is_adjusted else None
+        )
+
+    @property
+    def own_camera(self) -> Camera:
+        """The camera that belongs to the pose: with the adjusted principal point and focal length where there are."""
+        return self.camera if self.intrinsics is None else self.intrinsics.camera(self.camera)
 
     @property
     def n_observations(self) -> int:

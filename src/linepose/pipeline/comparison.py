@@ -100,16 +100,28 @@ def compare(first: Calibration, second: Calibration, range_m: float) -> Comparis
     total = covariances[0] + covariances[1]
     if shared:
         total = covariance_of_difference(covariances, first.hand_measured.body_covariance)
-    mounted = [Mounted(one.camera, one.pose) for one in (first, second)]
+    mounted = [Mounted(one.own_camera, one.pose) for one in (first, second)]
     return Comparison(
         (first.name, second.name),
         pose_difference(second.pose, first.pose),
         total,
         range_m,
-        _pixels(mounted[0], mounted[1], range_m, total),
+        _pixels(mounted[0], mounted[1], range_m, _with_intrinsics(total, first, second)),
         shared,
         _n_shared_measurements(first, second),
     )
+
+
+def _with_intrinsics(covariance: Floats, first: Calibration, second: Calibration) -> Floats:
+    """Covariance (8, 8) of the difference of pose, principal point (px) and focal length (m), given the pose's."""
+    whole = np.zeros((8, 8))
+    whole[:6, :6] = covariance
+    for one in (first.intrinsics, second.intrinsics):
+        if one is not None:
+            whole[6:, 6:] += one.covariance
+            whole[:6, 6:] += one.with_pose
+    whole[6:, :6] = whole[:6, 6:].T
+    return whole
 
 
 def _n_shared_measurements(first: Calibration, second: Calibration) -> int:
@@ -135,7 +147,8 @@ def _pixels(first: Mounted, second: Mounted, range_m: float, covariance: Floats)
     rows = {}
     for place, pixel in (("first", 0.0), ("centre", last / 2), ("last", float(last))):
         along, across = pixel_shift(first, second, pixel, range_m)
-        sigma = np.sqrt(np.diag(shift_covariance(first, second, pixel, range_m, covariance)))
+        variance = np.diag(shift_covariance(first, second, pixel, range_m, covariance))
+        sigma = np.sqrt(np.maximum(variance, 0.0))
         rows[place] = {
             "along_m": along,
             "across_m": across,

@@ -7,6 +7,7 @@ from linepose.adjustment import AdjustmentSettings
 from linepose.adjustment.levels import LEVEL_NAMES
 from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS, euler_pose
+from linepose.pipeline.adjusted_intrinsics import intrinsics_from_table
 from linepose.pipeline.adjusted_schemas import ADJUSTED, CORRECTION_COLUMNS, STAGES
 from linepose.pipeline.adjusted_tables import adjusted_tables
 from linepose.pipeline.stages import SAMPLES
@@ -69,3 +70,14 @@ def test_all_observations_are_accepted(tables):
     assert tables["outliers"]["accepted"].all()
     assert not tables["outliers"]["removed"].any()
     assert tables["optima"]["stage"].tolist() == ["inliers"]
+
+
+def test_principal_point_and_focal_length_are_kept_with_how_the_pose_follows_them(tables, estimator):
+    found = estimator.adjusted(seed=SEED)
+    kept = intrinsics_from_table(tables["adjusted_intrinsics"])
+    assert (kept.principal_point_px, kept.focal_length_m) == (found.principal_point_px, found.focal_length_m)
+    np.testing.assert_array_equal(kept.covariance, found.intrinsics_covariance)
+    np.testing.assert_array_equal(kept.pose_by_intrinsics, found.pose_by_intrinsics)
+    camera = kept.camera(estimator.camera)
+    assert camera.principal_point_px != estimator.camera.principal_point_px
+    assert camera.sigmas == estimator.camera.sigmas

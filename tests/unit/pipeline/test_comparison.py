@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 import linepose
 from linepose.cli.compare import lines_of
 from linepose.estimation.pose_change import covariance_of_difference
+from linepose.geometry.camera import normalised_from_pixel
 from linepose.geometry.distance import difference_covariance
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.pipeline.calibration import Calibration
@@ -85,8 +86,12 @@ def test_without_a_prior_the_two_are_independent(pair):
 
 def test_pixels_move_by_the_camera_s_shift_on_the_ground(pair):
     found = compare(*pair, range_m=10.0)
-    forward = pair[0].matrix[:3, :3].T @ [MOVE_M, 0, 0]
+    turn, camera = pair[0].matrix[:3, :3], pair[0].own_camera
+    forward = turn.T @ [MOVE_M, 0, 0]
     assert_allclose(found.pixels["across_m"], forward[1], atol=1e-9)
+    assert camera.principal_point_px != pair[0].camera.principal_point_px
+    x = normalised_from_pixel(camera, 0.0)
+    assert_allclose(found.pixels.loc["first", "along_m"], forward[0] - forward[2] * x, atol=1e-9)
     assert list(found.pixels.index) == ["first", "centre", "last"]
 
 

@@ -19,7 +19,7 @@ def write_camera_info(calibration: "Calibration", options: ExportOptions, path: 
     """Write camera matrix, distortion, no rectification and the projection; the pose stands in the comments alone."""
     import yaml
 
-    camera = calibration.camera
+    camera = calibration.own_camera
     estimate = calibration.estimate.in_axes(options.body_axes or "flu")
     focal, centre = float(camera.focal_length_px), float(camera.principal_point_px)
     info = {

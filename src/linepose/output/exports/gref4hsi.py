@@ -39,14 +39,14 @@ def write_gref4hsi(calibration: "Calibration", options: ExportOptions, path: Pat
     values = {
         **dict(zip(("rx", "ry", "rz"), map(float, turn), strict=True)),
         **dict(zip(("tx", "ty", "tz"), map(float, estimate.pose[:3]), strict=True)),
-        **line_camera(calibration.camera, calibration.name),
+        **line_camera(calibration.own_camera, calibration.name),
     }
     root = ElementTree.Element("calibration")
     for said in explained(calibration, estimate):
         root.append(ElementTree.Comment(f" {re.sub('-(?=-)', '- ', said)} "))
     for name, value in values.items():
         ElementTree.SubElement(root, name).text = exact_decimal(value + 0.0)
-    ElementTree.SubElement(root, "width").text = str(calibration.camera.n_pixels)
+    ElementTree.SubElement(root, "width").text = str(calibration.own_camera.n_pixels)
     ElementTree.indent(root)
     path.write_bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
 

@@ -25,7 +25,7 @@ def _content(calibration: "Calibration", options: ExportOptions) -> dict[str, An
     from linepose.output.exports.numbers import plain
 
     estimate = calibration.estimate.in_axes(options.body_axes or "frd")
-    pose = estimate.pose
+    pose, camera = estimate.pose, calibration.own_camera
     return {
         "format": "linepose pose",
         "version": VERSION,
@@ -42,6 +42,10 @@ def _content(calibration: "Calibration", options: ExportOptions) -> dict[str, An
             "rotation_vector": "angle (rad) times unit axis, camera to body",
             "euler": "roll, pitch, yaw (rad): R = Rz(yaw) Ry(pitch) Rx(roll), zyx intrinsic, xyz about fixed axes",
             "covariance": f"of the parameters in their order, m and rad; from {calibration.covariance_from}",
+        },
+        "camera": {
+            "is_adjusted": calibration.intrinsics is not None,
+            **camera.model_dump(exclude={"sigmas"}),
         },
         "position_m": plain(pose[:3]),
         "rotation_vector_rad": plain(pose[3:]),

@@ -22,7 +22,7 @@ def write_kalibr(calibration: "Calibration", options: ExportOptions, path: Path)
 
     from linepose.output.exports.numbers import plain
 
-    camera = calibration.camera
+    camera = calibration.own_camera
     estimate = calibration.estimate.in_axes(options.body_axes or "frd")
     focal = camera.focal_length_px
     chain = {

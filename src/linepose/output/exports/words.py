@@ -27,6 +27,13 @@ def explained(calibration: "Calibration", estimate: "PoseWithCovariance") -> lis
         + ", ".join(f"{value:.5f}" for value in sigma[3:])
         + f" rad ({calibration.covariance_from}).",
     ]
+    if calibration.intrinsics is not None:
+        camera = calibration.own_camera
+        lines.append(
+            f"The camera adjusted with it, without which it is another pose: principal point "
+            f"{camera.principal_point_px:.3f} px from the first pixel's centre, focal length "
+            f"{camera.focal_length_m * 1e3:.5f} mm."
+        )
     if estimate.body_axes == "flu":
         lines.insert(
             2,

@@ -119,12 +119,21 @@ def _between(
 
 @kernel_part
 def _covariance(
-    n: Floats, w: Floats, s: float, c6: Floats, along: Floats, across: Floats, variances: Floats, m: Floats, t: Floats
+    n: Floats,
+    w: Floats,
+    s: float,
+    c6: Floats,
+    cx: Floats,
+    along: Floats,
+    across: Floats,
+    variances: Floats,
+    m: Floats,
+    t: Floats,
 ) -> None:
     """Covariance (3, 3) of where a ray meets the ground, in m; t (3, 3) is scratch.
 
-    c6 (6, 6): of the centre and of a small turn, in world axes; along, across (3,): the ray by x and v of the
-    normalised plane; variances (3,): of those two, and of the ground's height.
+    c6 (6, 6): of the centre and of a small turn, in world axes, and cx (6,): of these with x; along, across (3,): the
+    ray by x and v of the normalised plane; variances (3,): of those two, and of the ground's height.
     """
     wx, wy, wz = s * w[0], s * w[1], s * w[2]
     for i in range(3):  # a turn moves the end of the ray by B = -[s w]x
@@ -145,6 +154,12 @@ def _covariance(
         m[0, j] += t[1, j] * wz - t[2, j] * wy
         m[1, j] += t[2, j] * wx - t[0, j] * wz
         m[2, j] += t[0, j] * wy - t[1, j] * wx
+    t[0, 0] = s * (cx[0] + cx[4] * wz - cx[5] * wy)  # of the ray's end with x
+    t[0, 1] = s * (cx[1] + cx[5] * wx - cx[3] * wz)
+    t[0, 2] = s * (cx[2] + cx[3] * wy - cx[4] * wx)
+    for i in range(3):
+        for j in range(3):
+            m[i, j] += along[i] * t[0, j] + t[0, i] * along[j]
     slope = 1.0 / (n[0] * w[0] + n[1] * w[1] + n[2] * w[2])
     for j in range(3):  # P M P^T
         nm = (n[0] * m[0, j] + n[1] * m[1, j] + n[2] * m[2, j]) * slope
@@ -173,8 +188,10 @@ def on_the_ground(
     centre: Any,
     turn: Any,
     covariance: Any,
+    with_intrinsics: Any,
     camera_turn: Any,
     x: Any,
+    by_intrinsics: Any,
     variances: Any,
     normal: Any,
     offset: float,
@@ -191,14 +208,15 @@ def on_the_ground(
     """Fill igm (L, 3, P), sigma (L, 4, P) and states (L, P) of lines with P pixels; NaN where there is no ground.
 
     centre (L, 3), turn (L, 3, 3): camera's centre, and body to world. covariance (L, 6, 6): of the centre and of a
-    small turn of the camera, in world axes. camera_turn (3, 3): camera to body. x (P,): normalised. variances (P, 3):
-    of x, of v, and of the ground's height. grid: heights, or one cell for the plane of normal (3,) and offset. to_map
-    (3, 3): map axes by north, east, down. radii (R,): of 95 % by the ratio of the axes. igm: east, north, up (m) of the
-    survey's own axes. extremes (2,): lowest and highest of the grid. sigma: of the three map axes, and the radius of
-    95 %.
+    small turn of the camera, in world axes; with_intrinsics (L, 6, 2): of both with principal point and focal length.
+    camera_turn (3, 3): camera to body. x (P,): normalised; by_intrinsics (P, 2): its derivatives by these two.
+    variances (P, 3): of x, of v, and of the ground's height. grid: heights, or one cell for the plane of normal (3,)
+    and offset. to_map (3, 3): map axes by north, east, down. radii (R,): of 95 % by the ratio of the axes. igm: east,
+    north, up (m) of the survey's own axes. extremes (2,): lowest and highest of the grid. sigma: of the three map axes,
+    and the radius of 95 %.
     """
     is_grid = grid.size > 1
-    n, w, out = normal.copy(), np.empty(3), np.empty(3)
+    n, w, out, cx = normal.copy(), np.empty(3), np.empty(3), np.empty(6)
     m, t, a = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     axes = np.empty((3, 3))
     for line in range(centre.shape[0]):
@@ -225,7 +243,12 @@ def on_the_ground(
                 continue
             igm[line, 0, pixel], igm[line, 1, pixel] = c[1] + s * w[1], c[0] + s * w[0]
             igm[line, 2, pixel] = -(c[2] + s * w[2])
-            _covariance(n, w, s, covariance[line], axes[0], axes[1], variances[pixel], m, t)
+            for i in range(6):
+                cx[i] = (
+                    with_intrinsics[line, i, 0] * by_intrinsics[pixel, 0]
+                    + with_intrinsics[line, i, 1] * by_intrinsics[pixel, 1]
+                )
+            _covariance(n, w, s, covariance[line], cx, axes[0], axes[1], variances[pixel], m, t)
             for i in range(3):
                 for j in range(3):
                     t[i, j] = to_map[i, 0] * m[0, j] + to_map[i, 1] * m[1, j] + to_map[i, 2] * m[2, j]

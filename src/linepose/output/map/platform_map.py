@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from linepose.adjustment.levels import LEVEL_NAMES, Levels
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.estimation.noise_models import noise_model
 from linepose.inputs.navigation import log_covariances, read_navigation
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.scans.line_times import line_times_of
@@ -29,7 +28,7 @@ from linepose.output.map.rasters import ScanRasters, write_rasters
 from linepose.output.map.sources import MountedCamera
 from linepose.output.map.write_places import places_header, sigma_header, write_places
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, LEVELS
-from linepose.pipeline.calibration import INLIERS, Calibration
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.code_digest import script_digest
 from linepose.survey.navigation_log import POSE_AT
 
@@ -79,7 +78,7 @@ class PlatformMap:
 
     def _correction(self, number: int) -> Floats:
         """What the adjustment added to the body's poses in an observation; zero where the pose is of no adjustment."""
-        if not _is_adjusted(self.calibration):
+        if not self.calibration.is_adjusted:
             return np.zeros(6)
         views = self.calibration.adjusted_views
         rows = views.loc[views["observation"] == number, list(CORRECTION_COLUMNS)].to_numpy(dtype=float)
@@ -102,7 +101,13 @@ def platform_map(calibration: Calibration, section: "MapSection", folder: Path) 
         settings.maximum_pose_gap_s,
         settings.maximum_gap_s,
     )
-    mounted = MountedCamera(platform.intrinsics(), calibration.pose, calibration.covariance, _levels(calibration))
+    mounted = MountedCamera(
+        calibration.own_camera,
+        calibration.pose,
+        calibration.covariance,
+        _levels(calibration),
+        calibration.intrinsics,
+    )
     frame = survey_map(calibration)
     ground = ground_of(calibration, section, frame, folder)
     scan = ScanOnMap("", np.empty(0, dtype=np.int64), mounted, navigation, ground, frame, np.zeros(6))
@@ -186,7 +191,15 @@ def _digest(scan: ScanOnMap) -> str:
         script_digest(__file__),
         repr((ground.sigma_m, ground.offset, ground.corner_m, ground.cell_m)),
     ]
-    arrays: list[NDArray[Any]] = [mounted.pose, mounted.covariance, log.time_us, log.position_m, log.euler_rad]
+    arrays: list[NDArray[Any]] = [
+        mounted.pose,
+        mounted.covariance,
+        mounted.intrinsics_covariance,
+        mounted.with_intrinsics,
+        log.time_us,
+        log.position_m,
+        log.euler_rad,
+    ]
     arrays += [reported.time_us, reported.covariance, ground.normal, ground.grid]
     whole = hashlib.sha256()
     for part in (*(word.encode() for word in words), *(np.ascontiguousarray(one).tobytes() for one in arrays)):
@@ -194,14 +207,9 @@ def _digest(scan: ScanOnMap) -> str:
     return whole.hexdigest()
 
 
-def _is_adjusted(calibration: Calibration) -> bool:
-    """Whether the pose is an adjustment's, with which levels and corrections were found."""
-    return calibration.stage == INLIERS and not noise_model(calibration.noise_model).removes_outliers
-
-
 def _levels(calibration: Calibration) -> Levels | None:
     """The scales that an adjustment found; None where the pose is not one's."""
-    if not _is_adjusted(calibration):
+    if not calibration.is_adjusted:
         return None
     table = calibration.results.table("levels", LEVELS).set_index("level")["value"]
     return Levels(*(float(table[name]) for name in LEVEL_NAMES))

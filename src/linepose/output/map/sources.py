@@ -6,6 +6,7 @@ from functools import cache
 from typing import Final, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from linepose.adjustment.levels import Levels
 from linepose.arrays import Floats
@@ -17,6 +18,7 @@ from linepose.geometry.rotations import (
     skew,
     small_rotation_by_euler,
 )
+from linepose.pipeline.adjusted_intrinsics import AdjustedIntrinsics
 
 Source = Literal["pose", "intrinsics", "navigation", "pixel", "ground"]
 SOURCES: Final[tuple[Source, ...]] = ("pose", "intrinsics", "navigation", "pixel", "ground")
@@ -31,13 +33,28 @@ _ANGLES: Final = 720
 class MountedCamera:
     """A camera's intrinsics, its pose (6,) on the body and that pose's covariance (6, 6).
 
-    `levels` scale what the navigation reports, and the pixel's noise, where an adjustment has estimated them.
+    `levels` scale what the navigation reports, and the pixel's noise, where an adjustment has estimated them;
+    `intrinsics` tell how principal point and focal length err, and the pose with them, where it has estimated these.
     """
 
     camera: Camera
     pose: Floats
     covariance: Floats
     levels: Levels | None = None
+    intrinsics: AdjustedIntrinsics | None = None
+
+    @property
+    def intrinsics_covariance(self) -> Floats:
+        """Covariance (2, 2) of principal point (px) and focal length (m)."""
+        if self.intrinsics is not None:
+            return self.intrinsics.covariance
+        sigmas = self.camera.sigmas
+        return np.diag([sigmas.principal_point_px**2, sigmas.focal_length_m**2])
+
+    @property
+    def with_intrinsics(self) -> Floats:
+        """Covariance (6, 2) of the pose, position (m) and small turn about body axes (rad), with these two."""
+        return np.zeros((6, 2)) if self.intrinsics is None else self.intrinsics.with_pose
 
     @property
     def turn(self) -> Floats:
@@ -58,13 +75,11 @@ def pixel_variances(mounted: MountedCamera, sources: Collection[Source], sigma_g
     camera = mounted.camera
     sigmas, focal = camera.sigmas, camera.focal_length_px
     distorted = (np.arange(camera.n_pixels) - camera.principal_point_px) / focal
-    slope = (
-        undistort(distorted + _STEP, camera.k1, camera.k2) - undistort(distorted - _STEP, camera.k1, camera.k2)
-    ) / (2 * _STEP)
+    slope = _slope(camera, distorted)
     variances = np.zeros((camera.n_pixels, 3))
     if "intrinsics" in sources:
-        variances[:, 0] += (slope * sigmas.principal_point_px / focal) ** 2
-        variances[:, 0] += (slope * distorted * sigmas.focal_length_m / camera.focal_length_m) ** 2
+        by_pair = by_intrinsics(camera)
+        variances[:, 0] += np.einsum("pi,ij,pj->p", by_pair, mounted.intrinsics_covariance, by_pair)
         for k1, k2, sigma in ((_STEP, 0.0, sigmas.k1), (0.0, _STEP, sigmas.k2)):
             higher = undistort(distorted, camera.k1 + k1, camera.k2 + k2)
             lower = undistort(distorted, camera.k1 - k1, camera.k2 - k2)
@@ -108,6 +123,33 @@ def line_covariances(
         by_body[:, 3:, 3:] = turn
         total += by_body @ of_body @ np.swapaxes(by_body, -1, -2)
     return total
+
+
+def line_with_intrinsics(mounted: MountedCamera, euler_rad: Floats, sources: Collection[Source]) -> Floats:
+    """Covariances (L, 6, 2) of the camera's centre and small turn, in world axes, with the pair of intrinsics.
+
+    Pose and intrinsics of an adjustment err together: apart, each alone counts.
+    """
+    if "pose" not in sources or "intrinsics" not in sources:
+        return np.zeros((len(euler_rad), 6, 2))
+    body = matrix_from_euler(euler_rad)
+    return np.concatenate([body @ mounted.with_intrinsics[:3], body @ mounted.with_intrinsics[3:]], axis=1)
+
+
+def by_intrinsics(camera: Camera) -> Floats:
+    """Derivatives (P, 2) of each pixel's normalised x by principal point (px) and focal length (m)."""
+    distorted = (np.arange(camera.n_pixels) - camera.principal_point_px) / camera.focal_length_px
+    by_distorted = -_slope(camera, distorted)[:, None]
+    return by_distorted * np.stack(
+        [np.full(camera.n_pixels, 1 / camera.focal_length_px), distorted / camera.focal_length_m], axis=1
+    )
+
+
+def _slope(camera: Camera, distorted: ArrayLike) -> Floats:
+    """Derivative (P,) of the ideal normalised x by the distorted one (P,)."""
+    distorted = np.asarray(distorted, dtype=float)
+    higher, lower = (undistort(distorted + step, camera.k1, camera.k2) for step in (_STEP, -_STEP))
+    return (higher - lower) / (2 * _STEP)
 
 
 def normalised_pixels(camera: Camera) -> Floats:

@@ -1,5 +1,6 @@
 """Exports in other tools' words: each tool's documented equations take a pixel to the same ground point."""
 
+import json
 from xml.etree import ElementTree
 
 import cv2
@@ -84,3 +85,18 @@ def test_camera_info_lands_on_the_same_ground(made, results, tmp_path, distortio
     direction = in_camera @ made.matrix[:3, :3].T @ BODY.T
     centre = BODY_POSITION_M + BODY @ made.matrix[:3, 3]
     np.testing.assert_allclose(ground(centre, direction), ours(chosen.camera, made.matrix), atol=MILLIMETRE)
+
+
+def test_exports_of_an_adjustment_have_the_camera_that_belongs_to_the_pose(tmp_path):
+    """And not the file's, four pixels off: the pose was found with the adjusted one."""
+    made_up.write_adjusted_results(tmp_path / "made-up")
+    calibration = Calibration.from_results(tmp_path / "made-up", made_up.adjusted_platform())
+    info = yaml.safe_load(calibration.export("camera_info", tmp_path / "info").read_text())
+    np.testing.assert_allclose(info["camera_matrix"]["data"][:3], [8.25e-3 / 7.4e-6, 0, 327.0])
+    camchain = yaml.safe_load(calibration.export("kalibr", tmp_path / "kalibr").read_text())
+    np.testing.assert_allclose(camchain["cam0"]["intrinsics"][::2], [8.25e-3 / 7.4e-6, 327.0])
+    gref = ElementTree.parse(calibration.export("gref4hsi", tmp_path / "gref")).getroot()
+    assert float(gref.findtext("cx")) == 327.5
+    told = json.loads(calibration.export("json", tmp_path / "json").read_text())["camera"]
+    assert (told["principal_point_px"], told["is_adjusted"]) == (327.0, True)
+    assert "principal point 327.000 px" in calibration.export("urdf", tmp_path / "urdf").read_text()

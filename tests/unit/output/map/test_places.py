@@ -5,10 +5,16 @@ import pytest
 
 from linepose.errors import InputError
 from linepose.geometry.camera import rays, undistort
-from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector, rotation_vector_from_matrix
+from linepose.geometry.rotations import (
+    left_jacobian_so3,
+    matrix_from_euler,
+    matrix_from_rotation_vector,
+    rotation_vector_from_matrix,
+)
 from linepose.output.map.ground import Ground, flat_ground, plane_through
 from linepose.output.map.places import count_states
 from linepose.output.map.sources import SOURCES, radii_of_95
+from linepose.pipeline.adjusted_intrinsics import AdjustedIntrinsics
 from unit.output.map.made_up_scan import CAMERA, LEVELS, ORIGIN, POSE, POSE_COVARIANCE, scan
 
 
@@ -70,6 +76,41 @@ def test_sigmas_are_those_of_drawn_errors(source):
     np.testing.assert_allclose(sigma[2], spread[2], rtol=0.05, atol=1e-7)
     off = np.linalg.norm((draws - draws.mean(axis=0))[..., :2], axis=-1)
     np.testing.assert_allclose(np.quantile(off, 0.95, axis=0), sigma[3], rtol=0.05)
+
+
+def test_pose_and_intrinsics_of_an_adjustment_err_together():
+    """Sigmas of all sources beside draws in which pose and intrinsics are of one joint distribution."""
+    rng = np.random.default_rng(4)
+    by_pair = np.zeros((6, 2))
+    by_pair[3:, 0], by_pair[2, 1] = [-6e-3, 2e-3, 1e-3], 150.0  # of the pose by px and m
+    intrinsics = AdjustedIntrinsics(29.0, 8e-3, np.array([[1.0, 1e-5], [1e-5, 4e-10]]), by_pair)
+    turned = left_jacobian_so3(POSE[3:])
+    own = np.diag([0.004, 0.004, 0.004, 1e-3, 1e-3, 1e-3]) ** 2
+    steps_covariance = by_pair @ intrinsics.covariance @ by_pair.T + own
+    by_parameters = np.eye(6)
+    by_parameters[3:, 3:] = np.linalg.inv(turned)
+    strip = scan()
+    mounted = dataclasses.replace(
+        strip.mounted, covariance=by_parameters @ steps_covariance @ by_parameters.T, intrinsics=intrinsics
+    )
+    strip = dataclasses.replace(strip, mounted=mounted)
+    n, pixels = 20_000, np.array([0, 31, 59])
+    pair = rng.normal(size=(n, 2)) @ np.linalg.cholesky(intrinsics.covariance).T
+    steps = pair @ by_pair.T + rng.normal(size=(n, 6)) * np.sqrt(np.diag(own))
+    pose = POSE + steps @ by_parameters.T
+    camera = strip.mounted.camera
+    focal = (camera.focal_length_m + pair[:, 1:]) / camera.pixel_pitch_m
+    x = undistort((pixels - camera.principal_point_px - pair[:, :1]) / focal, camera.k1, camera.k2)
+    position, euler, _ = (one[0] for one in strip.bodies(7, 8))
+    body = matrix_from_euler(euler)
+    ray = np.stack([x, np.zeros_like(x), np.ones_like(x)], axis=-1)
+    direction = np.einsum("ij,njk,npk->npi", body, matrix_from_rotation_vector(pose[:, 3:]), ray)
+    centre = (position + pose[:, :3] @ body.T)[:, None]
+    places = centre + ((-42.0 - centre[..., 2:]) / direction[..., 2:]) * direction
+    both = strip.places(7, 8, ["pose", "intrinsics"]).sigma_m[0][:2, pixels]
+    np.testing.assert_allclose(both, places.std(axis=0).T[[1, 0]], rtol=0.03)
+    apart = [strip.places(7, 8, [one]).sigma_m[0][:2, pixels] for one in ("pose", "intrinsics")]
+    assert np.max(np.abs(np.hypot(*apart) / both - 1)) > 0.2
 
 
 def test_motion_is_that_from_line_to_line_whatever_the_block():
