@@ -32,10 +32,8 @@ def mark_in_map(path, near_m, half_m=0.04):
     return np.array([transform.c + transform.a * column, transform.f + transform.e * row])
 
 
-def test_marks_on_the_board_lie_where_the_map_says(copied):
-    done = copied.linepose("map", "tiny", "--cores", "2", "--bands", "1")
-    assert done.returncode == 0, done.stderr
-    results = copied.folder / "results" / "tiny"
+def test_marks_on_the_board_lie_where_the_map_says(finished):
+    results = finished.folder / "results" / "tiny"
     truth = pd.read_parquet(results / "truth.parquet").query("visible")
     true_m = truth[[f"point_{name}" for name in POSITION_COLUMNS]].to_numpy()[:, [1, 0, 2]] * [1, 1, -1]
     in_geotiff = np.full((len(truth), 2), np.nan)
@@ -53,5 +51,22 @@ def test_marks_on_the_board_lie_where_the_map_says(copied):
     # the points' plane errs with the camera's height, which the paper's likelihood states too surely
     assert np.ptp(error[:, 2]) < 0.01
     assert np.all(np.abs(in_geotiff - true_m[:, :2]) < np.minimum(3 * sigma[:, :2], 0.03))
-    again = copied.linepose("map", "tiny", "--bands", "1")
+    budget = pd.read_parquet(results / "map_budget.parquet")
+    assert budget["scan"].nunique() == 4
+    assert "Error budget of each scan" in (results / "report.html").read_text()
+
+
+def test_lost_and_unfinished_maps_are_made_again_to_the_same_bytes(copied):
+    """As after a kill: without the list the run is not done, and what is finished stays."""
+    results = copied.folder / "results" / "tiny"
+    before = {path.name: path.read_bytes() for path in (results / "map").iterdir()}
+    kept = results / "map" / "observation-01-igm.dat"
+    made_at = kept.stat().st_mtime_ns
+    (results / "map" / "observation-03-igm.dat").unlink()
+    (results / "map" / ".12345678-observation-03-sigma.dat").touch()
+    run = copied.run("results/tiny/map_files.txt", cores=1)
+    assert run.returncode == 0, run.stderr
+    assert {path.name: path.read_bytes() for path in (results / "map").iterdir()} == before
+    assert kept.stat().st_mtime_ns == made_at
+    again = copied.linepose("map", "tiny")
     assert again.stdout.count("(made before)") == 4

@@ -35,6 +35,7 @@ TINY = {
         "sensitivity": None,
         "adjustment_beside": {"n_splits": 1},
     },
+    "map": {"geotiff": {"bands": [1]}},
     "simulation": {
         "passes": PASSES,
         "faults": [],
@@ -42,7 +43,7 @@ TINY = {
         "image": {"supersampling": 2, "margin_share": 0.4},
     },
 }
-QUICK = TINY | {"experiments": dict.fromkeys(SECTIONS)}  # without any experiment
+QUICK = TINY | {"experiments": dict.fromkeys(SECTIONS), "map": None}  # without any experiment
 
 
 @dataclass(frozen=True)

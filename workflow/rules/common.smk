@@ -13,6 +13,7 @@ from linepose.experiments.registry import (
     compared_platforms,
     wanted_experiments,
 )
+from linepose.inputs.source import ScansSection
 from linepose.output.report.summary_file import summaries_on_disk
 from linepose.pipeline import code_digest, sections
 from linepose.pipeline.adjusted_schemas import ADJUSTED, STAGES
@@ -75,6 +76,11 @@ ADJUSTED_PLATFORMS = [
 KNOWING_PLATFORMS = [  # that know something of their points
     name for name, one in PROJECT.platforms.items() if one.points is not None
 ]
+MAPPED_PLATFORMS = [  # whose file asks for their scans on the map
+    name
+    for name, one in PROJECT.platforms.items()
+    if one.map is not None and isinstance(one.source, ScansSection)
+]
 PAPER_RESULTS = []  # what `rule all` makes of the paper, where config/paper exists
 FURTHER_PAGES = {}  # that the report links to: title and address
 
@@ -123,6 +129,20 @@ def settings(wildcards):
     return settings_of(wildcards.platform)
 
 
+def mapped_settings(wildcards):
+    """What the platform's file says that its maps depend on."""
+    return PROJECT.platforms[wildcards.platform].model_dump(
+        mode="json", exclude={"description", "experiments", "outline"}
+    )
+
+
+def map_results(platform):
+    """What the maps of a platform's scans are, where its file asks for them."""
+    if platform not in MAPPED_PLATFORMS:
+        return []
+    return [f"results/{platform}/map_{name}.parquet" for name in ("budget", "scans")]
+
+
 def experiment_results(platform):
     """The results of all experiments that are run for a platform."""
     return [
@@ -152,9 +172,13 @@ def results_of(platform):
     if platform in PROJECT.simulated:
         names += ["detection.parquet", "extraction_accuracy.parquet"]
         names += ["detected_points.parquet"]
-    return experiment_results(platform) + [
-        f"results/{platform}/{name}" for name in names
-    ]
+    if platform in MAPPED_PLATFORMS:
+        names += ["map_files.txt"]
+    return (
+        experiment_results(platform)
+        + map_results(platform)
+        + [f"results/{platform}/{name}" for name in names]
+    )
 
 
 def record(wildcards):
@@ -305,6 +329,7 @@ def reported(wildcards):
     return (
         experiment_results(wildcards.platform)
         + adjusted_results(wildcards.platform)
+        + map_results(wildcards.platform)
         + [f"results/{wildcards.platform}/{name}.parquet" for name in always]
     )
 

@@ -1,4 +1,36 @@
-# What people read: figures and reports.
+# What people take away and read: maps, figures and reports.
+
+
+rule map:  # finished scans stay in results/NAME/map when a run is killed, so that the next goes on
+    input:
+        pose="results/{platform}/pose.parquet",
+        samples="results/{platform}/mcmc",
+        points="results/{platform}/estimated_points.parquet",
+        frame="results/{platform}/map_frame.parquet",
+        adjusted=lambda wildcards: adjusted_results(wildcards.platform),
+        record=record,
+        lost=remade_if_lost("results/{platform}/map"),
+    output:
+        budget="results/{platform}/map_budget.parquet",
+        scans="results/{platform}/map_scans.parquet",
+        files="results/{platform}/map_files.txt",
+    log:
+        "results/logs/{platform}/map.log",
+    benchmark:
+        "results/benchmarks/{platform}/map.tsv"
+    wildcard_constraints:
+        platform=names_of(MAPPED_PLATFORMS),
+    conda:
+        "../../environment.yml"
+    threads: workflow.cores or 1
+    resources:
+        **BATCHES,
+    params:
+        platform=mapped_settings,
+        folder=recorded_folder,
+        code=script_digest("map"),
+    script:
+        "../../scripts/map.py"
 
 
 rule figures:

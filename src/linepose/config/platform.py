@@ -127,7 +127,9 @@ class Platform(Settings):
     )
     points: PointsSection | None = Field(None, description="What is known of points beside their measurements.")
     map_frame: MapFrameSection | None = Field(None, description="Where the survey lies on the Earth.")
-    map: MapSection | None = Field(None, description="How `linepose map` puts scans on the map; for scans only.")
+    map: MapSection | None = Field(
+        None, description="Scans on the map, by every run and by `linepose map`; for scans only."
+    )
     outline: OutlineSection | None = Field(None, description="A sketch of the platform for the figures.")
     experiments: dict[str, Any] = Field({}, description="Experiments on the accepted observations.")
 

@@ -4,6 +4,7 @@ Snakemake sees that a folder is there, not what is in it. The list stands beside
 rule that makes both.
 """
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from linepose.tables import atomic_write
@@ -11,9 +12,13 @@ from linepose.tables import atomic_write
 
 def write_file_list(folder: Path, path: Path) -> None:
     """Write the paths of all files below a folder, one a line, sorted."""
-    files = sorted(file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file())
+    write_list([file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file()], path)
+
+
+def write_list(files: Iterable[str], path: Path) -> None:
+    """Write paths, below the folder that they are in, one a line, sorted."""
     with atomic_write(path) as temporary:
-        temporary.write_text("".join(f"{file}\n" for file in files), encoding="utf-8")
+        temporary.write_text("".join(f"{file}\n" for file in sorted(files)), encoding="utf-8")
 
 
 def lost_files(folder: Path, path: Path) -> list[str]:

@@ -24,7 +24,7 @@ from linepose.output.map.files import check_target, remove_leftovers, written_to
 from linepose.output.map.frame import survey_map
 from linepose.output.map.ground import ground_of
 from linepose.output.map.places import Navigation, ScanOnMap
-from linepose.output.map.rasters import ScanRasters, write_rasters
+from linepose.output.map.rasters import GEOTIFF_ENDING, RASTER_ENDINGS, ScanRasters, write_rasters
 from linepose.output.map.sources import MountedCamera
 from linepose.output.map.write_places import places_header, sigma_header, write_places
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, LEVELS
@@ -139,6 +139,14 @@ def write_maps(platform: PlatformMap, output: Path, n_cores: int = 1) -> Iterato
         made = _write_scan(scan, output, digest, n_cores)
         rasters = write_rasters(path, scan.shape, scan.frame, platform.section, output, digest, n_cores)
         yield replace(made, rasters=rasters, is_new=made.is_new or rasters.is_new)
+
+
+def files_of(made: ScanMap) -> list[str]:
+    """Names of all files of a scan's map, sorted."""
+    endings = [*_ENDINGS, _RECORD]
+    if made.rasters is not None and made.rasters.n_rows:
+        endings += [*RASTER_ENDINGS, *([GEOTIFF_ENDING] if made.rasters.bands else [])]
+    return sorted(f"{made.name}{ending}" for ending in endings)
 
 
 def _write_scan(scan: ScanOnMap, output: Path, digest: str, n_cores: int) -> ScanMap:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from linepose.config.map import MapSection
 
 _RECORD: Final = "-glt.json"
+RASTER_ENDINGS: Final = ("-glt.dat", "-glt.hdr", _RECORD)
+GEOTIFF_ENDING: Final = ".tif"
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from linepose.output.adjusted import is_adjusted
 from linepose.output.report.adjustment import adjustment_section
 from linepose.output.report.clocks import clocks_section
 from linepose.output.report.data_or_prior import prior_weight_section
+from linepose.output.report.on_the_map import map_section
 from linepose.output.report.sections import SectionOnPage
 from linepose.output.report.sensitivity import influence_section
 from linepose.pipeline.calibration import Calibration
@@ -15,6 +16,7 @@ _SECTIONS: Final[tuple[Callable[[Calibration], SectionOnPage | None], ...]] = (
     prior_weight_section,
     influence_section,
     clocks_section,
+    map_section,
 )
 
 

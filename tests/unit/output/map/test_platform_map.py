@@ -1,12 +1,17 @@
 """A whole platform on the map: what the places of its pixels rest on."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from linepose.geometry.camera import rays
 from linepose.geometry.rotations import matrix_from_euler
-from linepose.output.map.platform_map import platform_map, write_maps
+from linepose.output.map.budget import ALL, AS_REPORTED
+from linepose.output.map.platform_map import files_of, platform_map, write_maps
+from linepose.output.map.sources import SOURCES
+from linepose.output.map.tables import MAP_TABLES, map_tables
 from linepose.pipeline.calibration import HAND_MEASURED, Calibration
+from linepose.tables import read_table, write_table
 from unit import made_up
 from unit.output.map.adjusted_platform import HEIGHT_M, adjusted_calibration, adjusted_scans
 
@@ -51,6 +56,25 @@ def test_the_hand_measured_pose_keeps_the_camera_of_the_file(adjusted):
     scan = platform_map(by_hand, calibration.platform_file.map, data).scan_on_map(1)
     assert scan.mounted.camera == calibration.platform_file.intrinsics()
     assert scan.mounted.intrinsics is None
+
+
+def test_tables_hold_the_budget_and_the_counts_whether_made_now_or_before(adjusted, tmp_path):
+    calibration, data = adjusted
+    section = calibration.platform_file.map.model_copy(update={"cell_m": 0.05})
+    maps = platform_map(calibration, section, data)
+    made, again = (list(write_maps(maps, tmp_path / "map", cores)) for cores in (2, 1))
+    assert [one.is_new for one in (*made, *again)] == [True, False]
+    first, second = map_tables(made), map_tables(again)
+    for name, schema in MAP_TABLES.items():
+        pd.testing.assert_frame_equal(first[name], second[name])
+        write_table(first[name], tmp_path / f"{name}.parquet", schema)
+        pd.testing.assert_frame_equal(read_table(tmp_path / f"{name}.parquet", schema), first[name])
+    row = first["map_scans"].iloc[0]
+    lines, pixels = maps.scan_on_map(1).shape
+    assert (row["scan"], row["n_pixels"], row["cell_m"]) == ("observation-01", lines * pixels, 0.05)
+    assert row["n_cells"] > 0
+    assert set(first["map_budget"]["source"]) == {*SOURCES, AS_REPORTED, ALL}
+    assert {path.name for path in (tmp_path / "map").iterdir()} == set(files_of(made[0]))
 
 
 def test_a_scan_that_is_done_is_made_again_where_its_intrinsics_are_others(adjusted, tmp_path):
