@@ -53,8 +53,9 @@ def _budget_table(anchor: str, budget: pd.DataFrame) -> TableOnPage:
     heads = ["Scan", *(source.capitalize() for source in sources), "Height", "Radius of 95 %"]
     sentence = (
         "Millimetres: one sigma of the horizontal place that each source gives alone, of all together, of the height, "
-        "and the radius that holds 95 %; medians over the scan's lines. Navigation as reported is what the levels scale "
-        "and no part of the whole. Pose and intrinsics of an adjustment err together: the whole may be less than both."
+        "and the radius that holds 95 %; medians over the scan's lines. Navigation as reported is what the levels "
+        "scale, and no part of the whole. Pose and intrinsics of an adjustment err together: the whole may be less "
+        "than both."
     )
     return TableOnPage(anchor, "Error budget of each scan", sentence, heads, rows, folded=False)
 
