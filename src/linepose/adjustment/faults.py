@@ -4,6 +4,7 @@ from typing import Final
 
 import numpy as np
 
+from linepose.adjustment.lost_weight import most_lost_by_tails
 from linepose.adjustment.result import Adjustment
 from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL, UNCLEAR
 from linepose.arrays import Floats
@@ -16,19 +17,16 @@ _FEWEST: Final = 3  # measurements of a view that tell causes apart
 def view_faults(found: Adjustment, errors: Residuals) -> list[str]:
     """One word a view (N,): `clock`, `label`, `jump` or `unclear`, empty for a view that is as good as the rest.
 
-    Some measurements far off while the others are good: labels. Errors that one time shift explains: a clock. Otherwise
+    A view is far off that has lost its own weight, or in which more measurements have than heavy tails explain. Some measurements far off while the others are good: labels. Errors that one time shift explains: a clock. Otherwise
     the body's pose jumped or drifted within the view. Of fewer than three measurements it is not clear.
     """
     words = []
     for view in range(len(found.view_weight)):
         single = found.measurement_weight[view]
-        weight = np.nanmin([found.view_weight[view], _or_one(single)])
-        words.append(_word(errors, single, view) if weight < DOUBTFUL_WEIGHT else "")
+        n_lost, n_seen = int(np.sum(single < DOUBTFUL_WEIGHT)), int(np.sum(np.isfinite(single)))
+        far_off = found.view_weight[view] < DOUBTFUL_WEIGHT or n_lost > most_lost_by_tails(n_seen)
+        words.append(_word(errors, single, view) if far_off else "")
     return words
-
-
-def _or_one(weights: Floats) -> float:
-    return float(np.nanmin(weights)) if np.isfinite(weights).any() else 1.0
 
 
 def _word(errors: Residuals, single: Floats, view: int) -> str:

@@ -24,7 +24,7 @@ from linepose.adjustment.posterior import Mixture
 from linepose.adjustment.process import Weights, components, corrections, error_image
 from linepose.adjustment.start import behind_at_start
 from linepose.adjustment.state import Knowledge, State, camera_step
-from linepose.adjustment.tails import DEGREES_OF_FREEDOM, MEASUREMENT_DIMENSION
+from linepose.adjustment.thresholds import DEGREES_OF_FREEDOM, MEASUREMENT_DIMENSION
 from linepose.adjustment.whitening import factorise, unwhiten, whiten_residual
 from linepose.arrays import Floats
 from linepose.survey.observations import Survey

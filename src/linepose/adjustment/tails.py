@@ -32,11 +32,10 @@ from linepose.adjustment.levels import Levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.process import Weights
 from linepose.adjustment.solve import Model, pass_at
+from linepose.adjustment.thresholds import DEGREES_OF_FREEDOM, MEASUREMENT_DIMENSION
 from linepose.arrays import Floats
 
-DEGREES_OF_FREEDOM: Final = 4.0
 CONSTANT_DIMENSION: Final = 6
-MEASUREMENT_DIMENSION: Final = 2
 
 
 class TailKind(IntEnum):

@@ -16,4 +16,6 @@ CAUSES: Final = {
     JUMP: "a jump of the navigation",
     UNCLEAR: "too few points tell why",
 }
+DEGREES_OF_FREEDOM: Final = 4.0  # of the Student-t tails
+MEASUREMENT_DIMENSION: Final = 2
 DOUBTFUL_WEIGHT: Final = 0.25  # of a view or a measurement: its errors are twice what the levels say

@@ -145,8 +145,8 @@ class Platform(Settings):
         if not isinstance(source, ScansSection) or source.points != "matching":
             return self
         ground = None if self.points is None else self.points.ground
-        if source.matching.ground_height_m is None and (ground is None or ground.height_m is None):
-            raise ValueError("source.matching.ground_height_m, or points.ground.height_m, with source.points matching")
+        if source.matching.ground_height_m is None and ground is None:
+            raise ValueError("source.matching.ground_height_m, or points.ground, with source.points matching")
         return self
 
     @property

@@ -1,40 +1,58 @@
 """The checks that only an adjustment has: weights of views, curvature, draws of the levels."""
 
+from collections.abc import Sequence
 from math import isnan
 from typing import Final
 
+from linepose.adjustment.lost_weight import most_lost_by_tails
 from linepose.adjustment.thresholds import (
     CAUSES,
     FEWEST_EFFECTIVE_DRAWS,
     TRUSTED_EIGENVALUE,
     TRUSTED_SHAPE,
 )
-from linepose.pipeline.checks import AdjustedEvidence, Check, Evidence, Level
+from linepose.pipeline.checks import AdjustedEvidence, Check, Evidence, Level, LostMeasurement
 
 _MANY: Final = 3  # one view in so many may be far off
+_NAMED: Final = 5  # measurements in a message
 _LARGE: Final = 3.0  # times what the navigation reports, from which its errors deserve a look ...
 _FAR_TOO_LARGE: Final = 10.0  # ... and from which something else is wrong
 
 
 def doubtful_views(evidence: Evidence, adjusted: AdjustedEvidence) -> Check:
-    """Whether the adjustment had to give a view little weight."""
+    """Whether the adjustment had to give views, or more single measurements than heavy tails explain, little weight."""
     found = f"All {evidence.n_observations} observations count, each with its weight."
     if evidence.influence is not None:
         found += (
             f" Observation {evidence.most_influential} has the most influence: without it the pose moves by "
             f"{evidence.influence:.1f} sigmas."
         )
-    if not adjusted.doubtful:
+    if not adjusted.doubtful and not adjusted.lost:
         return Check("Weights", Level.GOOD, f"{found} None is far off.")
-    named = ", ".join(f"{one.observation} ({CAUSES[one.fault]})" for one in adjusted.doubtful)
-    few = len(adjusted.doubtful) <= evidence.n_observations / _MANY
-    return Check(
-        "Weights",
-        Level.GOOD if few else Level.CARE,
-        f"{found} Far off, and of little weight: observation {named}.",
-        "" if few else "Look at these observations before the pose is relied on: more than a third are far off.",
-        "" if few else f"{len(adjusted.doubtful)} of {evidence.n_observations} observations are far off",
-    )
+    advice, brief = [], []
+    if adjusted.doubtful:
+        named = ", ".join(f"{one.observation} ({CAUSES[one.fault]})" for one in adjusted.doubtful)
+        found += f" Far off, and of little weight: observation {named}."
+        if len(adjusted.doubtful) > evidence.n_observations / _MANY:
+            advice.append("Look at these observations before the pose is relied on: more than a third are far off.")
+            brief.append(f"{len(adjusted.doubtful)} of {evidence.n_observations} observations are far off")
+    if adjusted.lost:
+        bound = most_lost_by_tails(adjusted.n_measurements)
+        found += (
+            f" Of {adjusted.n_measurements} measurements{' of the others' if adjusted.doubtful else ''} "
+            f"{len(adjusted.lost)} have lost their weight, where heavy tails explain up to {bound}: "
+            f"{_named(adjusted.lost)}."
+        )
+        if len(adjusted.lost) > bound:
+            advice.append("Look at these measurements: labels of other points, or matches of what looks alike.")
+            brief.append(f"{len(adjusted.lost)} of {adjusted.n_measurements} measurements have lost their weight")
+    return Check("Weights", Level.CARE if advice else Level.GOOD, found, " ".join(advice), ", ".join(brief))
+
+
+def _named(lost: Sequence[LostMeasurement]) -> str:
+    """The lightest by name, and that there are more."""
+    named = [f"point {one.point} of observation {one.observation} ({one.weight:.2g})" for one in lost[:_NAMED]]
+    return ", ".join(named) + (", ..." if len(lost) > _NAMED else "")
 
 
 def curvature(adjusted: AdjustedEvidence) -> Check:

@@ -41,12 +41,22 @@ class DoubtfulView:
 
 
 @dataclass(frozen=True)
+class LostMeasurement:
+    """A measurement that has lost its weight while its observation as a whole has not: its observation and point."""
+
+    observation: int
+    point: str
+    weight: float
+
+
+@dataclass(frozen=True)
 class AdjustedEvidence:
     """What the verdict on an adjustment rests on beside the rest.
 
     least_eigenvalue: of the curvature in units of the normal equations, NaN where it could not be had; effective_draws,
     pareto_shape: of the levels; drift_known: whether there are times, without which drift is not allowed for;
-    navigation_error: of the whole navigation error, in what is reported.
+    navigation_error: of the whole navigation error, in what is reported; lost: single measurements that have lost
+    their weight, the lightest first, and n_measurements: of how many they are.
     """
 
     least_eigenvalue: float
@@ -55,6 +65,8 @@ class AdjustedEvidence:
     doubtful: tuple[DoubtfulView, ...]
     drift_known: bool = True
     navigation_error: float = 1.0
+    lost: tuple[LostMeasurement, ...] = ()
+    n_measurements: int = 0
 
 
 @dataclass(frozen=True)

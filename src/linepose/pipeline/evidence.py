@@ -8,12 +8,13 @@ import pandas as pd
 import pyarrow as pa
 from scipy.special import chdtri
 
+from linepose.adjustment.thresholds import DOUBTFUL_WEIGHT
 from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
-from linepose.pipeline.adjusted_schemas import LEVELS, VIEWS
+from linepose.pipeline.adjusted_schemas import LEVELS, MEASUREMENTS, VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
-from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence
+from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence, LostMeasurement
 from linepose.pipeline.navigation_checks import EXACT
 from linepose.pipeline.pose_tables import PoseNumber, rotation_vector_numbers
 from linepose.pipeline.residual_tables import intraclass_correlation
@@ -119,6 +120,9 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:
     views = results.table("adjusted_views", VIEWS)
     levels = results.table("levels", LEVELS).set_index("level")
     doubtful = views[views["fault"] != ""]
+    single = results.table("adjusted_measurements", MEASUREMENTS)
+    single = single[~single["observation"].isin(doubtful["observation"])]
+    lost = single[single["weight"] < DOUBTFUL_WEIGHT].sort_values("weight", kind="stable")
     return AdjustedEvidence(
         float(chain["least_eigenvalue"].iloc[0]),
         float(chain["effective_sample_size"].min()),
@@ -129,6 +133,11 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:
         ),
         drift_known=bool(levels.loc["drift", "value"] > 0),
         navigation_error=navigation_error(levels["value"]),
+        lost=tuple(
+            LostMeasurement(int(row["observation"]), str(row["point"]), float(row["weight"]))
+            for _, row in lost.iterrows()
+        ),
+        n_measurements=len(single),
     )
 
 

@@ -26,6 +26,7 @@ from linepose.inputs.tie_points.features import Features, features_of
 from linepose.inputs.tie_points.pairs import Matches, matches_of
 from linepose.inputs.tie_points.settings import MatchingSection
 from linepose.inputs.tie_points.tracks import thinned, tracks_of
+from linepose.pipeline.ground_height import ground_down_m
 from linepose.survey.navigation import NavigationCovariances, associate_covariances
 from linepose.survey.navigation_log import POSE_AT, NavigationLog, associate_poses
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS, Survey, survey_from_table
@@ -71,7 +72,7 @@ def matched_points(platform: Platform, folder: Path) -> pd.DataFrame:
     reported = log_covariances(record, source, platform.navigation.covariance_columns, folder, corrections)
     origin_m = record.log.position_m[0]
     strips = read_strips(platform, folder, record.log, origin_m)
-    hand = _by_hand(platform, strips, _ground_down_m(platform) - origin_m[2])
+    hand = _by_hand(platform, strips, ground_down_m(platform, folder, [one.position_m for one in strips], origin_m))
     points = pd.DataFrame()
     for number in range(settings.rounds):
         cell_m = _cell_m(platform.camera, strips, hand, settings) * 2 ** (settings.rounds - 1 - number)
@@ -96,19 +97,6 @@ def read_strips(platform: Platform, folder: Path, log_of_body: NavigationLog, or
     return strips
 
 
-def _ground_down_m(platform: Platform) -> float:
-    """Down of the ground to begin with, as positions count it; raises InputError where nobody says."""
-    assert isinstance(platform.source, ScansSection)
-    height_m = platform.source.matching.ground_height_m
-    ground = None if platform.points is None else platform.points.ground
-    if height_m is None and ground is not None and ground.height_m is not None:
-        height_m = ground.height_m + ground.height_offset_m
-    if height_m is None:
-        found, expected = "no height of the ground", "one to a tenth of the range"
-        raise InputError("source.matching.ground_height_m", found, expected, "add it (m), or points.ground.height_m")
-    return -height_m
-
-
 def _by_hand(platform: Platform, strips: Sequence[MatchedStrip], down_m: float) -> _Hand:
     """What is at hand before anything is matched; raises InputError where the ground lies above a strip."""
     range_m = np.array([down_m - np.median(one.position_m[:, 2]) for one in strips])
@@ -118,7 +106,7 @@ def _by_hand(platform: Platform, strips: Sequence[MatchedStrip], down_m: float) 
             f"source.matching.ground_height_m: scan {worst.number}",
             f"a flight {-range_m.min():.1f} m below the ground",
             "ground below every strip",
-            "correct it (m): it counts upwards, as the positions' heights do",
+            "correct it (m), or points.ground: it counts upwards, as the positions' heights do",
         )
     by_hand, source = platform.hand_measured, platform.source
     assert isinstance(source, ScansSection)

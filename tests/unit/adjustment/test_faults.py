@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import binom, multivariate_t
 
 from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.adjustment.faults import view_faults
+from linepose.adjustment.lost_weight import SHARE_OF_TAILS, most_lost_by_tails
 from linepose.adjustment.reprojection import reprojection
 from linepose.adjustment.thresholds import CLOCK, DOUBTFUL_WEIGHT, JUMP, LABEL, UNCLEAR
 from unit.adjustment import timed_survey
@@ -74,3 +76,33 @@ def test_what_two_measurements_cannot_tell_is_unclear(survey):
     light = np.ones(12)
     light[3] = 0.99 * DOUBTFUL_WEIGHT
     assert view_faults(replace(found, view_weight=light), errors)[3] == UNCLEAR
+
+
+def test_the_share_that_tails_let_expect_is_that_of_drawn_errors():
+    """Four sigmas of a binomial count of 40,000 errors."""
+    squares = np.sum(multivariate_t(np.zeros(2), np.eye(2), df=4).rvs(40_000, random_state=4) ** 2, axis=1)
+    share = np.mean(6 / (4 + squares) < DOUBTFUL_WEIGHT)
+    assert share == pytest.approx(SHARE_OF_TAILS, abs=4 * np.sqrt(SHARE_OF_TAILS / 40_000))
+    for count in (150, 6000):
+        assert most_lost_by_tails(count) == binom.ppf(0.999, count, SHARE_OF_TAILS)
+
+
+def strips(survey, lost):
+    """Words of views with 20 times the points, of which the first `lost` of each (12,) have no weight."""
+    found = adjust(survey, timed_survey.CAMERA, timed_survey.POSE, settings=QUICK)
+    errors = reprojection(survey, timed_survey.CAMERA, found, timed_survey.LINE_S)
+    weight = np.tile(found.measurement_weight, 20)
+    for view, count in enumerate(lost):
+        weight[view, :count] = 0.01
+    wide = replace(
+        errors,
+        error_px=np.tile(errors.error_px, 20),
+        error_uv_px=np.tile(errors.error_uv_px, (1, 20, 1)),
+    )
+    return view_faults(replace(found, measurement_weight=weight), wide)
+
+
+def test_some_bad_matches_of_a_strip_are_no_fault_and_half_of_it_are(survey):
+    words = strips(survey, [1, 4, 12, 80, *[1] * 8])
+    assert words == ["", "", "", LABEL, *[""] * 8]
+    assert most_lost_by_tails(160) < 80

@@ -8,7 +8,8 @@ from scipy.integrate import quad
 from scipy.stats import gamma
 
 from linepose.adjustment import AdjustmentSettings, adjust
-from linepose.adjustment.tails import DEGREES_OF_FREEDOM, _bound
+from linepose.adjustment.tails import _bound
+from linepose.adjustment.thresholds import DEGREES_OF_FREEDOM
 from unit.adjustment import timed_survey
 
 CAMERA = timed_survey.CAMERA

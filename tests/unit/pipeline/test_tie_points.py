@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
+import rasterio
+from rasterio.transform import from_origin
 
 from linepose.adjustment.at_levels import pose_at_levels
 from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.pipeline.ground_height import ground_down_m
 from linepose.pipeline.load import read_points, with_navigation
 from linepose.simulation.flight_section import FlightSection, StripSection, TexturedGroundSection
 from linepose.simulation.flown_record import write_flight
@@ -30,8 +33,8 @@ def strips(layout=LAYOUT, duration_s=4.0):
     ]
 
 
-def flown(folder, ground=None, layout=LAYOUT, **source):
-    """The platform of a flight, whose scans stand in the folder."""
+def flown(folder, ground=None, layout=LAYOUT, dem=None, **source):
+    """The platform of a flight, whose scans stand in the folder; with a height model, without a height of the ground."""
     flight = FlightSection(
         seed=8,
         true_position_m=(0.17, 0.03, 0.12),
@@ -41,7 +44,8 @@ def flown(folder, ground=None, layout=LAYOUT, **source):
         ground=TexturedGroundSection(grain_m=0.3) if ground is None else ground,
     )
     write_flight(folder, CAMERA, flight)
-    matching = {"ground_height_m": 44.0, "n_points": 60, "n_features": 400} | source
+    matching = {"ground_height_m": None if dem else 44.0, "n_points": 60, "n_features": 400} | source
+    known = {"points": {"ground": {"dem": dem, "sigma_m": 1.0}}, "map_frame": {"crs": "EPSG:32756"}} if dem else {}
     hand = {
         "position_m": [0.15, 0.05, 0.1],
         "euler_deg": [0, 0, 90],
@@ -55,12 +59,43 @@ def flown(folder, ground=None, layout=LAYOUT, **source):
             "navigation": {"association": "interpolate"},
             "source": {"kind": "scans", "points": "matching", "matching": matching},
             "flight": flight.model_dump(),
+            **known,
         }
     )
 
 
-def test_the_pose_is_found_from_raw_scans_within_three_stated_sigmas(tmp_path):
-    platform = flown(tmp_path)
+def write_dem(path, origin_m, height_m, half_m=100.0):
+    """A height model of one height about an origin north, east of the flight's map."""
+    corner = from_origin(origin_m[1] - half_m, origin_m[0] + half_m, 10.0, 10.0)
+    size = int(half_m / 5.0)
+    kind = {"driver": "GTiff", "height": size, "width": size, "count": 1, "dtype": "float32", "crs": "EPSG:32756"}
+    with rasterio.open(path, "w", transform=corner, **kind) as raster:
+        raster.write(np.full((size, size), height_m, dtype="float32"), 1)
+
+
+def test_the_height_to_begin_with_is_the_models_below_the_strips(tmp_path):
+    ground = {"dem": "ground.tif", "sigma_m": 0.2, "height_offset_m": 30.0}
+    platform = Platform.model_validate(
+        {
+            "camera": CAMERA.model_dump(),
+            "hand_measured": {"position_m": [0, 0, 0], "euler_deg": [0, 0, 90]},
+            "source": {"kind": "scans", "dataset": "flight", "points": "matching"},
+            "points": {"ground": ground},
+            "map_frame": {"crs": "EPSG:32756"},
+        }
+    )
+    origin = np.array([6_248_550.0, 332_965.0, -90.0])
+    strips_m = [np.column_stack([np.linspace(-30, 30, 200), np.full(200, east), np.zeros(200)]) for east in (-4.0, 4.0)]
+    write_dem(tmp_path / "ground.tif", origin, 12.0)
+    assert ground_down_m(platform, tmp_path, strips_m, origin) == pytest.approx(90.0 - 42.0, abs=1e-3)
+    write_dem(tmp_path / "ground.tif", origin + 400.0, 12.0)
+    with pytest.raises(InputError, match="no height below 16 of 16 places of the strips"):
+        ground_down_m(platform, tmp_path, strips_m, origin)
+
+
+def test_the_pose_is_found_from_raw_scans_and_a_height_model_within_three_stated_sigmas(tmp_path):
+    write_dem(tmp_path / "ground.tif", (6_248_550.0, 332_965.0), 44.0)
+    platform = flown(tmp_path, dem="ground.tif")
     points = read_points(platform, tmp_path)
     assert 30 < points["point"].nunique() <= 60
     assert points["observation"].nunique() == 4

@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from linepose.estimation.noise_models import ADJUSTMENT, PUBLISHED
-from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView
+from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, LostMeasurement
 from linepose.pipeline.verdict import Evidence, Level, judge
 
 FINE = Evidence(
@@ -140,6 +140,12 @@ def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
             Level.CARE,
             "more than a third",
         ),
+        (
+            {"lost": tuple(LostMeasurement(1, f"t{n}", 0.1) for n in range(64)), "n_measurements": 1500},
+            "Weights",
+            Level.CARE,
+            "Look at these measurements",
+        ),
     ],
 )
 def test_each_fault_of_an_adjustment_is_named_with_what_to_do(change, name, level, advice):
@@ -155,3 +161,12 @@ def test_a_few_views_that_are_far_off_are_told_and_no_reason_to_doubt():
     check = named(judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, doubtful=doubtful))), "Weights")
     assert check.level == Level.GOOD
     assert "observation 7 (its clock), 9 (labels)" in check.found
+
+
+def test_a_few_bad_matches_of_thousands_are_named_and_no_reason_to_doubt():
+    lost = tuple(LostMeasurement(n % 10, f"t{n}", 0.01 * n) for n in range(1, 10))
+    check = named(judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, lost=lost, n_measurements=1500))), "Weights")
+    assert check.level == Level.GOOD
+    assert "Of 1500 measurements 9 have lost their weight, where heavy tails explain up to 63" in check.found
+    assert "point t1 of observation 1 (0.01), point t2" in check.found
+    assert "t6" not in check.found

@@ -11,7 +11,7 @@ class MatchingSection(Settings):
     ground_height_m: float | None = Field(
         None,
         description="Height of the ground to begin with, as the positions count heights (m), to a tenth of the range; "
-        "if not given, that of points.ground.",
+        "if not given, that of points.ground, of a height model the median below the strips.",
     )
     relief_m: PositiveFloat = Field(2.0, description="How far the ground lies off level within the survey (m).")
     n_points: int = Field(300, ge=10, le=100_000, description="Tie points that are kept, alike in all parts of strips.")
