@@ -17,8 +17,9 @@ _FEWEST: Final = 3  # measurements of a view that tell causes apart
 def view_faults(found: Adjustment, errors: Residuals) -> list[str]:
     """One word a view (N,): `clock`, `label`, `jump` or `unclear`, empty for a view that is as good as the rest.
 
-    A view is far off that has lost its own weight, or in which more measurements have than heavy tails explain. Some measurements far off while the others are good: labels. Errors that one time shift explains: a clock. Otherwise
-    the body's pose jumped or drifted within the view. Of fewer than three measurements it is not clear.
+    A view is far off that has lost its own weight, or in which more measurements have than heavy tails explain. Some
+    measurements far off while the others are good: labels. Errors that one time shift explains: a clock. Otherwise the
+    body's pose jumped or drifted within the view. Of fewer than three measurements it is not clear.
     """
     words = []
     for view in range(len(found.view_weight)):

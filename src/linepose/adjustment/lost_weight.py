@@ -15,9 +15,9 @@ from scipy.special import bdtr
 
 from linepose.adjustment.thresholds import DEGREES_OF_FREEDOM, DOUBTFUL_WEIGHT, MEASUREMENT_DIMENSION
 
-SHARE_OF_TAILS: Final = (
-    ((DEGREES_OF_FREEDOM + MEASUREMENT_DIMENSION) / DOUBTFUL_WEIGHT) / DEGREES_OF_FREEDOM
-) ** (-DEGREES_OF_FREEDOM / 2)  # of measurements, that tails let expect below DOUBTFUL_WEIGHT
+SHARE_OF_TAILS: Final = (((DEGREES_OF_FREEDOM + MEASUREMENT_DIMENSION) / DOUBTFUL_WEIGHT) / DEGREES_OF_FREEDOM) ** (
+    -DEGREES_OF_FREEDOM / 2
+)  # of measurements, that tails let expect below DOUBTFUL_WEIGHT
 _RARELY: Final = 1e-3  # as often more than the bound lose their weight by tails alone
 
 

@@ -34,7 +34,7 @@ def strips(layout=LAYOUT, duration_s=4.0):
 
 
 def flown(folder, ground=None, layout=LAYOUT, dem=None, **source):
-    """The platform of a flight, whose scans stand in the folder; with a height model, without a height of the ground."""
+    """The platform of a flight, whose scans stand in the folder; a height model stands for the height of the ground."""
     flight = FlightSection(
         seed=8,
         true_position_m=(0.17, 0.03, 0.12),

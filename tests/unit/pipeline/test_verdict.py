@@ -165,7 +165,9 @@ def test_a_few_views_that_are_far_off_are_told_and_no_reason_to_doubt():
 
 def test_a_few_bad_matches_of_thousands_are_named_and_no_reason_to_doubt():
     lost = tuple(LostMeasurement(n % 10, f"t{n}", 0.01 * n) for n in range(1, 10))
-    check = named(judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, lost=lost, n_measurements=1500))), "Weights")
+    check = named(
+        judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, lost=lost, n_measurements=1500))), "Weights"
+    )
     assert check.level == Level.GOOD
     assert "Of 1500 measurements 9 have lost their weight, where heavy tails explain up to 63" in check.found
     assert "point t1 of observation 1 (0.01), point t2" in check.found
