@@ -1,11 +1,12 @@
 """A run killed in the middle of a sweep goes on with the same command, to the same bytes; one run at a time."""
 
 import os
+import shutil
 import signal
 import time
 
 import pytest
-from tiny_project import STUDY, TINY, lines_with
+from tiny_project import STUDY, TINY, Project, lines_with
 
 pytestmark = pytest.mark.workflow
 BASIN = "results/tiny/basin.parquet"
@@ -26,13 +27,21 @@ def wait_for_batches(project, run):
     return finished
 
 
+@pytest.fixture(scope="module")
+def whole(finished, tmp_path_factory):
+    """The bytes of the sweep that ran through, in other batches and on one core."""
+    folder = tmp_path_factory.mktemp("whole") / "project"
+    shutil.copytree(finished.folder, folder)
+    project = with_batches_of(Project(folder), 30)
+    run = project.run(BASIN, cores=1)
+    assert run.returncode == 0, run.stderr
+    return (folder / BASIN).read_bytes()
+
+
 @pytest.mark.parametrize("killed", ["all processes", "snakemake alone"])
-def test_killed_sweep_goes_on_to_the_same_bytes(copied, killed):
-    """Against one that ran through in other batches on one core; orphans may still be at work when the next begins."""
-    whole = with_batches_of(copied, 30).run(BASIN, cores=1)
-    assert whole.returncode == 0, whole.stderr
+def test_killed_sweep_goes_on_to_the_same_bytes(copied, whole, killed):
+    """Orphans may still be at work when the next begins."""
     result = copied.folder / BASIN
-    expected = result.read_bytes()
     result.unlink()
 
     run = with_batches_of(copied, 1).start(BASIN)
@@ -43,7 +52,7 @@ def test_killed_sweep_goes_on_to_the_same_bytes(copied, killed):
 
     again = copied.run(BASIN)
     assert again.returncode == 0, again.stderr
-    assert result.read_bytes() == expected
+    assert result.read_bytes() == whole
     assert not finished.exists()
 
 
@@ -76,7 +85,7 @@ def test_linepose_run_killed_alone_takes_its_processes_along_and_goes_on(copied,
         time.sleep(0.1)
     assert not (copied.folder / BASIN).exists()
     if kind == signal.SIGKILL:
-        again = copied.linepose("run", "tiny", "--cores", "2")
+        again = copied.run(BASIN)
         assert again.returncode == 0, again.stderr
         assert (copied.folder / BASIN).is_file()
 
