@@ -7,7 +7,7 @@ STAMP := .venv/installed
 
 SHELL := bash
 
-.PHONY: help environment reproduce test slurm-test check types style docs bench readme-bench reference images lock clean
+.PHONY: help environment reproduce test slurm-test check types style dist docs bench readme-bench reference images lock clean
 
 help: ## What can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -39,6 +39,11 @@ style: $(STAMP) ## Style and the workflow's own lint alone
 	$(BIN)/ruff check .
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakefmt --check Snakefile workflow
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
+
+dist: $(STAMP) ## Build the source distribution, and from it the wheel, in dist/
+	rm -f dist/linepose-*
+	$(BIN)/python -c "from setuptools import build_meta; build_meta.build_sdist('dist')"
+	$(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir dist dist/linepose-*.tar.gz
 
 docs: $(STAMP) ## Build the documentation site in build/docs; a warning is an error
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs build/docs

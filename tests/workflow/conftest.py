@@ -4,6 +4,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from installed_wheel import install_wheel
 from made_once import made_once
 from tiny_project import STUDY, TINY, Project
 
@@ -26,3 +27,9 @@ def copied(finished, tmp_path) -> Project:
     """A copy of the finished project, to be spoilt."""
     shutil.copytree(finished.folder, tmp_path / "project")
     return Project(tmp_path / "project")
+
+
+@pytest.fixture(scope="session")
+def installed(tmp_path_factory) -> Path:
+    """A folder with the distributions, and an environment in which the wheel is installed."""
+    return made_once(tmp_path_factory, "installed", install_wheel)

@@ -1,6 +1,5 @@
-"""Every command of docs/your-platform.md, in the page's order, as a new user gives them in an empty folder."""
+"""Every command of docs/your-platform.md, in the page's order, as a user of the wheel gives them in an empty folder."""
 
-import os
 import re
 import shlex
 import subprocess
@@ -8,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from installed_wheel import environment, program
 from tiny_project import ROOT
 
 from linepose.config.platform import load_platform
@@ -20,13 +20,13 @@ BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SHORT = "outliers: {minimum_observations: 7}\nsampling: {n_walkers: 24, n_burn_in: 40, n_steps: 60}\n"
 
 
-def test_commands_of_the_page_in_order(tmp_path):
+def test_commands_of_the_page_in_order(installed, tmp_path):
     page = (ROOT / "docs" / "your-platform.md").read_text()
     commands = [line for block in BLOCK.findall(page) for line in block.splitlines()]
     assert [command.split()[1] for command in commands] == ["new", "check", "run", "show", "export", "export"]
     told = {}
     for command in commands:
-        told[command.split()[1]] = as_a_user(command, tmp_path)
+        told[command.split()[1]] = as_a_user(command, tmp_path, installed)
         if " new " in command:
             write_platform_files(
                 tmp_path / "data" / "myrobot", load_platform(ROOT / "config" / "platforms", "ladybird-sim"), 8
@@ -43,16 +43,14 @@ def test_commands_of_the_page_in_order(tmp_path):
     assert (tmp_path / "myrobot.json").is_file()
 
 
-def as_a_user(command: str, folder: Path) -> str:
+def as_a_user(command: str, folder: Path, installed: Path) -> str:
     """What a command of the page prints; it must end well."""
-    program = Path(sys.executable).with_name("linepose")
     first, *arguments = shlex.split(command)
     assert first == "linepose"
-    path = os.pathsep.join([str(program.parent), os.environ["PATH"]])
     done = subprocess.run(
-        [program, *arguments],
+        [program(installed, "linepose"), *arguments],
         cwd=folder,
-        env=os.environ | {"PATH": path},
+        env=environment(),
         capture_output=True,
         text=True,
         timeout=900,

@@ -15,6 +15,9 @@ def run(
     cores: Annotated[
         int | None, typer.Option("--cores", "-c", min=1, help="Processor cores.", show_default="all")
     ] = None,
+    profile: Annotated[
+        str, typer.Option("--profile", metavar="NAME", help="A profile of Snakemake, as `slurm` for a cluster.")
+    ] = "",
     dry_run: Annotated[bool, typer.Option("--dry-run", "-n", help="Only tell what would be made.")] = False,
     further: Annotated[
         list[str] | None,
@@ -29,7 +32,7 @@ def run(
     """
     from linepose.cli.freshness import all_outdated
     from linepose.cli.snakemake_process import files_of_workflow, run_snakemake
-    from linepose.cli.workflow_files import find_workflow
+    from linepose.cli.workflow_files import find_profile, find_workflow, says_cores
     from linepose.experiments.registry import compared_platforms
     from linepose.pipeline.outdated import told
     from linepose.pipeline.project_folder import find_project, load_platform_project
@@ -41,8 +44,11 @@ def run(
     loaded = load_platform_project(name, root, compared_platforms)
     loaded.check_files()
     snakefile = find_workflow(root)
-    quiet = ["--quiet", "host", *(["rules"] if dry_run else [])]
-    arguments = ["--cores", str(cores or "all"), *quiet, "--config", f'platforms=["{name}"]']
+    chosen = find_profile(profile, root, snakefile) if profile else None
+    arguments = [] if chosen is None else ["--profile", str(chosen)]
+    if cores or chosen is None or not says_cores(chosen):
+        arguments += ["--cores", str(cores or "all")]
+    arguments += ["--quiet", "host", *(["rules"] if dry_run else []), "--config", f'platforms=["{name}"]']
     outdated = all_outdated(loaded, root, name, snakefile.parent / "scripts")
     if outdated:
         typer.echo(f"{'would be made again' if dry_run else 'made again'}: {told(outdated)}", err=True)

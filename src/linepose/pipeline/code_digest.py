@@ -16,6 +16,7 @@ from typing import Final
 from linepose.pipeline.module_source import SourceCache
 
 _PACKAGE: Final = Path(__file__).parents[1]
+_WORKFLOW: Final = _PACKAGE / "workflow"  # which the wheel carries: no part of the library
 _CODE: Final = {".py", ".pyi", ".pyc", ".typed"}
 _CACHE: Final = SourceCache(Path(__file__).parent / "__pycache__")
 
@@ -74,7 +75,7 @@ def _closure(script: str, modules: Sequence[str]) -> list[str]:
 @cache
 def _file(name: str) -> _File:
     path = Path(name)
-    place = path.relative_to(_PACKAGE.parent).as_posix() if path.is_relative_to(_PACKAGE) else path.name
+    place = path.relative_to(_PACKAGE.parent).as_posix() if _is_of_library(path) else path.name
     if path.suffix != ".py":
         return _File(hashlib.sha256(path.read_bytes()).hexdigest()[:16], place, ())
     source = _CACHE.read(path)
@@ -103,7 +104,7 @@ def _files(module: str, importer: str) -> tuple[str, ...]:
     if _is_ours(module):
         return _package_files(module)
     beside = Path(importer).with_name(f"{module}.py")
-    return (str(beside),) if not Path(importer).is_relative_to(_PACKAGE) and beside.is_file() else ()
+    return (str(beside),) if not _is_of_library(Path(importer)) and beside.is_file() else ()
 
 
 @cache
@@ -122,11 +123,17 @@ def _package_data(package: Path) -> tuple[str, ...]:
     """Files other than code in a package's folder and in those of its folders that are no packages."""
     found: list[Path] = []
     for path in sorted(package.iterdir()):
-        if path.is_dir() and path.name != "__pycache__" and not any(path.glob("*.py")):
+        if path == _WORKFLOW or path.name == "__pycache__":
+            continue
+        if path.is_dir() and not any(path.glob("*.py")):
             found += (file for file in path.rglob("*") if file.is_file())
         elif path.is_file() and path.suffix not in _CODE:
             found.append(path)
     return tuple(str(path) for path in sorted(found))
+
+
+def _is_of_library(path: Path) -> bool:
+    return path.is_relative_to(_PACKAGE) and not path.is_relative_to(_WORKFLOW)
 
 
 def _is_ours(module: str) -> bool:

@@ -341,7 +341,23 @@ def test_run_without_the_workflow_says_where_it_is(mine, monkeypatch, tmp_path):
     monkeypatch.setattr(workflow_files, "__file__", str(tmp_path / "site-packages" / "linepose" / "cli" / "x.py"))
     result = given("run", "mine")
     assert result.exit_code == 1
-    assert "clone the repository" in one_line(result)
+    assert "install linepose again" in one_line(result)
+
+
+def test_run_takes_profiles_by_name_or_path_and_says_what_there_is(mine, monkeypatch):
+    snakefile = workflow_files.find_workflow(mine)
+    own = mine / "profiles" / "own" / "config.yaml"
+    own.parent.mkdir(parents=True)
+    own.write_text("jobs: 5\n")
+    monkeypatch.chdir(mine)
+    assert workflow_files.find_profile("own", mine, snakefile) == own.parent
+    assert workflow_files.find_profile("profiles/own", mine, snakefile) == own.parent
+    assert workflow_files.find_profile("ci", mine, snakefile) == snakefile.parent / "profiles" / "ci"
+    assert workflow_files.says_cores(own.parent)
+    assert not workflow_files.says_cores(snakefile.parent / "profiles" / "default")
+    assert "ci, default, own" in one_line(given("run", "mine", "--profile", "none-such"))
+    own.write_text("executor: none-such\n")
+    assert "pip install snakemake-executor-plugin-none-such" in one_line(given("run", "mine", "--profile", "own"))
 
 
 @pytest.mark.parametrize("cores", ["0", "two"])
