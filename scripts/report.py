@@ -22,4 +22,4 @@ with stage(snakemake) as log:
         path.write_text(page, encoding="utf-8")
     with atomic_write(output.summary) as path:
         write_summary(one.summary, path)
-    log.info("%s %.1f MB", one.summary.verdict.sentence, len(page.encode()) / 1e6)
+    log.info("%s: %s %.1f MB", calibration.name, one.summary.verdict.sentence, len(page.encode()) / 1e6)

@@ -5,7 +5,7 @@ from pathlib import Path
 from adapter import stage
 
 with stage(snakemake) as log:
-    from linepose.output.report.page import render_study_page
+    from linepose.output.report.page import render_study_page, worst_first
     from linepose.output.report.provenance import settings_text, versions
     from linepose.output.report.summary_file import read_summary, summaries_on_disk
     from linepose.tables import atomic_write
@@ -14,7 +14,7 @@ with stage(snakemake) as log:
     others = summaries_on_disk(Path(snakemake.output[0]).parent)
     summaries = [read_summary(path) for path in (others | made).values()]
     page = render_study_page(
-        sorted(summaries, key=lambda summary: summary.name),
+        worst_first(summaries),
         settings_text(snakemake.params.study),
         versions(),
         snakemake.params.further_pages,

@@ -8,6 +8,7 @@ import linepose
 from linepose.cli import check, compare, export, label, new, recheck, run, show, target
 from linepose.cli import map as map_command
 from linepose.cli.faults import OneLineFaults
+from linepose.cli.further_options import WithFurtherOptions
 from linepose.cli.three_numbers import ThreeNumbers
 
 app = typer.Typer(
@@ -46,7 +47,7 @@ app.command(name="new", cls=ThreeNumbers)(new.new)
 app.command(name="target")(target.target)
 app.command(name="label")(label.label)
 app.command(name="check")(check.check)
-app.command(name="run")(run.run)
+app.command(name="run", cls=WithFurtherOptions)(run.run)
 app.command(name="show")(show.show)
 app.command(name="export")(export.export)
 app.command(name="map")(map_command.map_scans)

@@ -7,6 +7,7 @@ from typing import Final
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
+from linepose.config.platform_patterns import fits
 from linepose.config.project import CONFIG
 from linepose.errors import InputError
 from linepose.tables import atomic_write
@@ -32,7 +33,7 @@ def make_project(root: Path, platform: str) -> Path:
 
 
 def add_platform(config: Path, platform: str) -> bool:
-    """Add a platform to those of a config.yaml, everything else left as it is; whether it was not there yet.
+    """Add a platform to those of a config.yaml, everything else left as it is; whether none there named it.
 
     Raises InputError for a file that is no YAML or has no list of platforms.
     """
@@ -47,7 +48,7 @@ def add_platform(config: Path, platform: str) -> bool:
     platforms = values.get("platforms") if isinstance(values, dict) else None
     if not isinstance(platforms, list):
         raise InputError(f"{config}: platforms", repr(platforms), "a list of names", f"add `- {platform}` by hand")
-    if platform in platforms:
+    if any(fits(platform, str(one)) for one in platforms):
         return False
     _append(platforms, platform)
     text = io.StringIO()

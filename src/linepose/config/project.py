@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from linepose.config.platform import Platform, load_platform
+from linepose.config.platform_patterns import named_platforms
 from linepose.config.study import DatasetSection, Study, check_study, load_dataset
 from linepose.errors import InputError
 from linepose.survey.datasets import find_dataset
@@ -106,7 +107,7 @@ def compared_with_none(platform: Platform, file: str) -> Sequence[str]:  # noqa:
 
 
 def load_project(values: dict[str, Any], root: Path, compared: Compared = compared_with_none) -> Project:
-    """The project that config.yaml's values and the files they name describe.
+    """The project that config.yaml's values and the files they name describe, patterns of platforms told by name.
 
     `compared` checks the experiments of a platform of which the file is named too, and names the platforms that they
     compare it with: `linepose.experiments.registry.compared_platforms`. In an offline study, a data set that is in no
@@ -114,6 +115,8 @@ def load_project(values: dict[str, Any], root: Path, compared: Compared = compar
     key, file or name that is wrong.
     """
     study = check_study(values)
+    names = named_platforms(study.platforms, root / study.platforms_folder)
+    study = study.model_copy(update={"platforms": names})
     platforms = {name: load_platform(root / study.platforms_folder, name) for name in study.platforms}
     for name, platform in list(platforms.items()):
         for other in compared(platform, str(root / study.platforms_folder / f"{name}.yaml")):

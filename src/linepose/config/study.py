@@ -51,7 +51,9 @@ class DatasetSection(Settings):
 class Study(Settings):
     """config/config.yaml."""
 
-    platforms: list[str] = Field(min_length=1, description="Platforms to run: files of config/platforms.")
+    platforms: list[str] = Field(
+        min_length=1, description="Platforms to run: files of config/platforms, by name or pattern (`fleet-*`)."
+    )
     platforms_folder: str = Field("config/platforms", description="Folder of the platform files.")
     data_folders: list[WorkflowPath] = Field(
         ["data", "../shared"], min_length=1, description="Folders searched for data sets, in this order."

@@ -360,6 +360,62 @@ def test_run_takes_profiles_by_name_or_path_and_says_what_there_is(mine, monkeyp
     assert "pip install snakemake-executor-plugin-none-such" in one_line(given("run", "mine", "--profile", "own"))
 
 
+@pytest.fixture
+def fleet(mine):
+    """A project with two platforms, of which config.yaml names one."""
+    platforms = mine / "config" / "platforms"
+    (platforms / "mine-2.yaml").write_text((platforms / "mine.yaml").read_text())
+    return mine
+
+
+@pytest.mark.parametrize(
+    ("arguments", "configured", "chosen"),
+    [
+        (["--all"], ["mine*"], ["mine", "mine-2"]),
+        (["--all"], ["mine"], ["mine"]),
+        (["mi*"], ["mine"], ["mine", "mine-2"]),
+        (["mine-2", "mine"], ["mine"], ["mine-2", "mine"]),
+    ],
+)
+def test_run_takes_several_platforms(fleet, monkeypatch, arguments, configured, chosen):
+    started = []
+    monkeypatch.setattr(
+        subprocess, "Popen", lambda command, env, stderr: started.append(command) or SimpleNamespace(wait=lambda: 0)
+    )
+    (fleet / "config" / "config.yaml").write_text(yaml.safe_dump({"platforms": configured}))
+    result = given("run", *arguments)
+    assert result.exit_code == 0, result.output
+    (command,) = started
+    assert command[command.index("--config") + 1] == f"platforms={chosen}".replace("'", '"')
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--all", "mine"], "--all: found mine beside it, expected names or --all"),
+        ([], "NAME: found nothing, expected a platform's name, a pattern of names, or --all"),
+        (["mine", "mine"], "NAME: found mine twice"),
+        (["tractor-*"], "NAME: found 'tractor-*', which fits no file"),
+    ],
+)
+def test_run_refuses_what_names_no_platform_or_one_twice(fleet, arguments, told):
+    assert told in one_line(given("run", *arguments))
+
+
+@pytest.mark.parametrize("command", ["check", "show"])
+def test_other_commands_take_no_pattern(fleet, command):
+    result = given(command, "mine*")
+    assert result.exit_code == 1
+    assert "letters, digits, - and _" in " ".join(result.output.split())
+
+
+def test_new_platform_that_a_pattern_names_is_not_added(fleet):
+    config = fleet / "config" / "config.yaml"
+    config.write_text("platforms: ['mine*']\n")
+    assert "added" not in given("new", "mine-3", *GIVEN).stdout
+    assert config.read_text() == "platforms: ['mine*']\n"
+
+
 @pytest.mark.parametrize("cores", ["0", "two"])
 def test_wrong_usage_ends_with_two(mine, cores):
     assert given("run", "mine", "--cores", cores).exit_code == 2

@@ -1,6 +1,6 @@
 """The reports as HTML files that need no network: Jinja2 templates filled from the results."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -13,6 +13,7 @@ from linepose.output.report.sections import SectionOnPage
 from linepose.pipeline.checks import Level
 from linepose.pipeline.pose_tables import PoseNumber
 from linepose.pipeline.summary import PlatformSummary
+from linepose.pipeline.verdict import Verdict
 
 _WORDS: Final = {Level.GOOD: "good", Level.CARE: "care", Level.BAD: "bad"}
 _SIGNS: Final = {Level.GOOD: "✓ passed", Level.CARE: "! look", Level.BAD: "✗ failed"}
@@ -62,6 +63,16 @@ def render_platform_page(platform: PlatformOnPage, settings: str, package_versio
     return template.render(one=platform, settings=settings, versions=package_versions)
 
 
+def worst_first(summaries: Iterable[PlatformSummary]) -> list[PlatformSummary]:
+    """Platforms by what needs a look: by verdict, then by how many checks gave it, then by name."""
+
+    def order(summary: PlatformSummary) -> tuple[int, int, str]:
+        level = summary.verdict.level
+        return -level, -sum(check.level == level for check in summary.verdict.reasons), summary.name
+
+    return sorted(summaries, key=order)
+
+
 def render_study_page(
     summaries: Sequence[PlatformSummary],
     settings: str,
@@ -92,9 +103,18 @@ def page_environment(*packages: str) -> Environment:
         "sign": _SIGNS.__getitem__,
         "number": _number,
         "brief": _brief,
+        "why": _why,
         "capital": lambda text: text[:1].upper() + text[1:],
     }
     return environment
+
+
+def _why(verdict: Verdict) -> str:
+    """The worst reason of a verdict, and how many more there are."""
+    if not verdict.reasons:
+        return "every check passed"
+    first, *more = verdict.reasons
+    return f"{first.brief or first.name}{f', and {len(more)} more' if more else ''}"
 
 
 def _number(value: float, of: PoseNumber) -> str:

@@ -6,10 +6,12 @@ from dataclasses import replace
 import pytest
 
 from linepose.errors import InputError
-from linepose.output.report.page import render_study_page
+from linepose.output.report.page import render_study_page, worst_first
 from linepose.output.report.provenance import settings_text, versions
 from linepose.output.report.summary_file import read_summary, summaries_on_disk, write_summary
+from linepose.pipeline.checks import Level
 from linepose.pipeline.summary import summarise
+from linepose.pipeline.verdict import Verdict
 
 
 def page_of(*summaries):
@@ -23,6 +25,23 @@ def test_every_platform_has_its_card_and_links_to_its_page(results):
     assert 'href="another.html"' in page
     assert "Use this pose with care: look at 4 of 9 checks." in page
     assert "The chain has 20 steps where 200 are needed. <strong>Set sampling.n_steps to 200" in page
+
+
+def test_platforms_that_need_a_look_come_first_with_the_reason(results):
+    care = summarise(results)
+    assert care.verdict.level == Level.CARE
+    bad = replace(care.verdict.checks[0], level=Level.BAD, brief="the pose is far off")
+    good = replace(care, name="a", verdict=Verdict(Level.GOOD, "Use this pose.", ()))
+    worse = replace(care, name="z", verdict=Verdict(Level.BAD, "Do not use this pose yet.", (bad, bad)))
+    worst = replace(care, name="zz", verdict=Verdict(Level.BAD, "Do not use this pose yet.", (bad, bad, bad)))
+    ordered = worst_first([good, worse, care, worst])
+    assert [one.name for one in ordered] == ["zz", "z", "made-up", "a"]
+    page = page_of(*ordered)
+    places = [page.index(f'<a href="#{name}-overview">') for name in ("zz", "z", "made-up", "a")]
+    assert places == sorted(places)
+    assert "the pose is far off, and 1 more" in page
+    assert "every check passed" in page
+    assert "those that need a look first" not in page_of(care)
 
 
 def test_what_is_read_back_makes_the_same_page(results, tmp_path):
