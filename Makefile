@@ -39,6 +39,7 @@ style: $(STAMP) ## Style and the workflow's own lint alone
 	$(BIN)/ruff check .
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakefmt --check Snakefile workflow
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
+	$(BIN)/hadolint Dockerfile
 
 dist: $(STAMP) ## Build the source distribution, and from it the wheel, in dist/
 	rm -f dist/linepose-*

@@ -1,4 +1,7 @@
-"""The tiny project and a coverage cell on SLURM and locally: the same bytes. `make slurm-test`."""
+"""The tiny project and a coverage cell on SLURM and locally: the same bytes. `make slurm-test`.
+
+`python tests/slurm --faults` makes the faults alone.
+"""
 
 import os
 import sys
@@ -6,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 import cluster
+from faults import faults
 from project import CELL, LOCAL, NOT_COMPARED, SLURM, differences, results, run, tiny
 
 SLOWER_AT_MOST = 1.3  # coverage cell, on SLURM against locally
@@ -18,7 +22,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="slurm-test-") as name:
         folder = Path(name)
         with cluster.running(folder):
-            same_bytes(folder)
+            if "--faults" not in sys.argv:
+                same_bytes(folder)
+            for line in faults(folder):
+                tell(line)
 
 
 def same_bytes(folder: Path) -> None:

@@ -76,6 +76,7 @@ def running(folder: Path) -> Iterator[None]:
         _wait_until_idle()
         yield
     finally:
+        slurm("scancel", "--me", check=False)
         for daemon in reversed(daemons):
             daemon.terminate()
             daemon.wait(30)

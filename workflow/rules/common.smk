@@ -1,4 +1,3 @@
-import os
 from hashlib import sha256
 from pathlib import Path
 
@@ -18,35 +17,9 @@ from linepose.output.report.summary_file import summaries_on_disk
 from linepose.pipeline import code_digest, sections
 from linepose.pipeline.adjusted_schemas import ADJUSTED, STAGES
 from linepose.pipeline.file_list import lost_files
-from linepose.pipeline.parent_process import COMMAND, SNAKEMAKE, exit_with_process
-from linepose.pipeline.run_lock import hold_run_lock
 from linepose.tables import read_table
 
-# What a job asks of a scheduler, memory in MB and time in minutes; more with each attempt, after SLURM has ended one.
-# Measured: 170 to 450 MB, and up to 770 in batches on two cores; Snakemake takes 300 MB beside it on a node.
-LIGHT = {
-    "mem_mb": lambda wildcards, attempt: 1000 * attempt,
-    "runtime": lambda wildcards, attempt: 30 * attempt,
-}
-LONG = LIGHT | {"runtime": lambda wildcards, attempt: 240 * attempt}
-BATCHES = LONG | {
-    "mem_mb": lambda wildcards, threads, attempt: (700 + 300 * threads) * attempt
-}
-
 FOLDERS = ("simulated", "mcmc", "figures")  # results that are folders of many files
-
-# Scripts end with the process that starts them, and that one with the `linepose run` that started it.
-os.environ[SNAKEMAKE] = str(os.getpid())
-if COMMAND in os.environ and not workflow.remote_exec:  # which runs on this machine
-    exit_with_process(COMMAND)
-
-
-onstart:
-    try:
-        hold_run_lock(Path())
-    except LineposeError as error:
-        raise SystemExit(f"linepose: {error}") from None  # told on the error stream
-
 
 try:
     PROJECT = load_project(config, Path(), compared_platforms)

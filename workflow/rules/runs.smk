@@ -1,0 +1,89 @@
+# How a run begins and ends, on this machine or with jobs on others, and what jobs ask of a scheduler.
+import os
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
+from snakemake.logging import logger
+
+if find_spec("linepose") is None:
+    raise WorkflowError(
+        f"linepose: node {os.uname().nodename}: found no package linepose in {sys.executable}, expected the one that "
+        f"planned: {os.environ.get('LINEPOSE_HEAD', 'pip show linepose tells it')}; install that version there"
+    )
+
+from linepose.errors import LineposeError
+from linepose.pipeline.cluster.node import check_node, hand_over
+from linepose.pipeline.cluster.slurm import (
+    Asked,
+    check_asked,
+    ended_jobs,
+    largest_node,
+    wait_for_earlier_jobs,
+)
+from linepose.pipeline.parent_process import COMMAND, SNAKEMAKE, exit_with_process
+from linepose.pipeline.run_lock import check_no_run, hold_run_lock
+
+# What a job asks of a scheduler, memory in MB and time in minutes; more with each attempt, after SLURM has ended one.
+# Measured: 170 to 450 MB, and up to 770 in batches on two cores; Snakemake takes 300 MB beside it on a node.
+LIGHT = {
+    "mem_mb": lambda wildcards, attempt: 1000 * attempt,
+    "runtime": lambda wildcards, attempt: 30 * attempt,
+}
+LONG = LIGHT | {"runtime": lambda wildcards, attempt: 240 * attempt}
+BATCHES = LONG | {
+    "mem_mb": lambda wildcards, threads, attempt: (700 + 300 * threads) * attempt
+}
+
+# Scripts end with the process that starts them, and that one with the `linepose run` that started it.
+os.environ[SNAKEMAKE] = str(os.getpid())
+if COMMAND in os.environ and not workflow.remote_exec:  # which runs on this machine
+    exit_with_process(COMMAND)
+
+
+if workflow.remote_exec:
+    try:
+        check_node(Path())
+    except LineposeError as error:
+        raise WorkflowError(f"linepose: {error}") from None
+
+
+def asked_of_nodes():
+    """What the jobs of this run ask of their nodes."""
+    jobs = [job for job in workflow.dag.needrun_jobs() if not job.is_local]
+    return [
+        Asked(job.rule.name, job.threads, int(job.resources.get("mem_mb") or 0))
+        for job in jobs
+    ]
+
+
+def tell_ended_jobs(log, mended):
+    """One line on the error stream for each job that SLURM ended."""
+    files = [Path(file) for file in ([log] if isinstance(log, str) else log or [])]
+    for file in filter(Path.is_file, files):
+        for line in ended_jobs(file.read_text(), mended):
+            print(line, file=sys.stderr)
+
+
+onstart:
+    try:
+        check_no_run(Path())
+        others = wait_for_earlier_jobs(Path(), logger.warning)
+        hold_run_lock(Path())
+        if workflow.non_local_exec:
+            hand_over(Path())
+        if workflow.executor_plugin.name == "slurm":
+            check_asked(asked_of_nodes(), largest_node())
+    except LineposeError as error:
+        raise SystemExit(f"linepose: {error}") from None  # told on the error stream
+    if others:  # plan anew, with what these have made
+        os.execv(sys.executable, sys.orig_argv)
+
+
+onsuccess:
+    tell_ended_jobs(log, mended=True)
+
+
+onerror:
+    tell_ended_jobs(log, mended=False)
