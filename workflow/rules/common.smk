@@ -113,7 +113,8 @@ def map_results(platform):
     """What the maps of a platform's scans are, where its file asks for them."""
     if platform not in MAPPED_PLATFORMS:
         return []
-    return [f"results/{platform}/map_{name}.parquet" for name in ("budget", "scans")]
+    names = ["map_budget", "map_scans", "strip_patches", "strip_fit"]
+    return [f"results/{platform}/{name}.parquet" for name in names]
 
 
 def experiment_results(platform):
@@ -292,6 +293,7 @@ def figure_inputs(wildcards):
     return (
         experiment_results(wildcards.platform)
         + adjusted_results(wildcards.platform)
+        + map_results(wildcards.platform)
         + detected
     )
 

@@ -33,6 +33,35 @@ rule map:  # finished scans stay in results/NAME/map when a run is killed, so th
         "../../scripts/map.py"
 
 
+rule strip_fit:
+    input:
+        pose="results/{platform}/pose.parquet",
+        samples="results/{platform}/mcmc",
+        points="results/{platform}/estimated_points.parquet",
+        frame="results/{platform}/map_frame.parquet",
+        adjusted=lambda wildcards: adjusted_results(wildcards.platform),
+        record=record,
+    output:
+        strip_patches="results/{platform}/strip_patches.parquet",
+        strip_fit="results/{platform}/strip_fit.parquet",
+    log:
+        "results/logs/{platform}/strip_fit.log",
+    benchmark:
+        "results/benchmarks/{platform}/strip_fit.tsv"
+    wildcard_constraints:
+        platform=names_of(MAPPED_PLATFORMS),
+    conda:
+        "../../environment.yml"
+    resources:
+        **BATCHES,
+    params:
+        platform=mapped_settings,
+        folder=recorded_folder,
+        code=script_digest("strip_fit"),
+    script:
+        "../../scripts/strip_fit.py"
+
+
 rule figures:
     input:
         observations="results/{platform}/observations.parquet",

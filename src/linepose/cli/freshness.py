@@ -35,5 +35,5 @@ def all_outdated(project: "Project", root: Path, name: str, scripts: Path) -> "l
     platform = project.platforms[name]
     sections = {key: section.values(platform) for key, section in SECTIONS.items()}
     left_out = {output for one in EXPERIMENTS if not one.is_wanted(platform) for output in one.outputs}
-    left_out |= set() if platform.map else {"map_budget", "map_scans"}
+    left_out |= set() if platform.map else {"map_budget", "map_scans", "strip_patches", "strip_fit"}
     return outdated_results(Present(project, root, name, scripts, sections, frozenset(left_out)))

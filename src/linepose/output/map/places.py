@@ -6,10 +6,11 @@ from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.geometry.camera import normalised_from_pixel
 from linepose.geometry.rotations import matrix_from_euler
 from linepose.inputs.navigation.record import nearest_rows
 from linepose.output.map.frame import SurveyMap
@@ -132,6 +133,7 @@ class ScanOnMap:
         n, pixels = len(centre), self.shape[1]
         place, sigma = np.empty((n, N_PLACE, pixels)), np.empty((n, N_SIGMA, pixels), dtype=np.float32)
         state = np.empty((n, pixels), dtype=np.uint8)
+        normal, offset, grid, corner, cell, extremes = self._ground_for_kernel
         on_the_ground(
             centre,
             body,
@@ -141,12 +143,12 @@ class ScanOnMap:
             self._x,
             by_intrinsics(mounted.camera),
             pixel_variances(mounted, sources, ground.sigma_m),
-            ground.normal,
-            ground.offset,
-            ground.grid,
-            np.array(ground.corner_m),
-            np.array(ground.cell_m),
-            self._extremes_m,
+            normal,
+            offset,
+            grid,
+            corner,
+            cell,
+            extremes,
             self.frame.jacobian(centre[n // 2]),
             radii_of_95(),
             place,
@@ -154,6 +156,50 @@ class ScanOnMap:
             state,
         )
         return Places(self._on_map(place), sigma, state)
+
+    def places_of(self, line: ArrayLike, u_px: ArrayLike) -> Floats:
+        """Easting, northing, height (K, 3) at fractional lines (K,) and pixels (K,); NaN where a ray has none."""
+        at, mounted = np.asarray(line, dtype=float), self.mounted
+        if not len(at):
+            return np.empty((0, N_PLACE))
+        times = np.rint(np.interp(at, np.arange(self.shape[0]), self.time_us - self.time_us[0])).astype(np.int64)
+        position, euler = self.navigation.pose_at(self.navigation.log, times + self.time_us[0])
+        body = matrix_from_euler(euler + self.correction[3:])
+        centre = position + self.correction[:3] + body @ mounted.pose[:3]
+        x = normalised_from_pixel(mounted.camera, u_px)
+        place = np.empty((len(at), N_PLACE, 1))
+        nothing = np.zeros((1, 6, 6)), np.zeros((1, 6, 2)), np.zeros((1, 2)), np.zeros((1, 3))
+        sigma, state = np.empty((1, N_SIGMA, 1), dtype=np.float32), np.empty((1, 1), dtype=np.uint8)
+        normal, offset, grid, corner, cell, extremes = self._ground_for_kernel
+        for k in range(len(at)):
+            on_the_ground(
+                centre[k : k + 1],
+                body[k : k + 1],
+                nothing[0],
+                nothing[1],
+                mounted.turn,
+                x[k : k + 1],
+                nothing[2],
+                nothing[3],
+                normal,
+                offset,
+                grid,
+                corner,
+                cell,
+                extremes,
+                np.eye(3),
+                radii_of_95(),
+                place[k : k + 1],
+                sigma,
+                state,
+            )
+        return np.asarray(self._on_map(place)[..., 0])
+
+    @property
+    def _ground_for_kernel(self) -> tuple[Any, ...]:
+        ground = self.ground
+        corner, cell = np.array(ground.corner_m), np.array(ground.cell_m)
+        return ground.normal, ground.offset, ground.grid, corner, cell, self._extremes_m
 
     def _on_map(self, place: Floats) -> Floats:
         """Easting, northing, height of east, north, up in the survey's own axes; (n, 3, P)."""

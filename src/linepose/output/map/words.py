@@ -1,5 +1,9 @@
 """A scan's map in words."""
 
+from typing import Any
+
+import pandas as pd
+
 from linepose.output.map.budget import ALL
 from linepose.output.map.platform_map import ScanMap
 
@@ -9,6 +13,11 @@ _MEANINGS = {
     "n_outside": "leave the elevation model",
     "n_in_hole": "end in a hole of it",
     "n_met_twice": "meet the ground more than once",
+}
+_LEFT_OUT = {
+    "n_uncorrelated": "more were not found again",
+    "n_contradicted": "lie where their neighbours do not say",
+    "n_without_ground": "see no ground",
 }
 _WITHOUT_PLACE = ("n_missed", "n_outside", "n_in_hole")
 
@@ -36,6 +45,21 @@ def budget_sentences(made: ScanMap) -> list[str]:
                 f"  one sigma at the {place}: {by_source[ALL]:.1f} mm; its sources, each alone: {', '.join(parts)}"
             )
     return told
+
+
+def fit_sentence(fit: "pd.Series[Any]") -> str:
+    """Whether overlapping scans fit, from the row of `FIT`: how far apart they lie, and what was compared."""
+    count = {key: int(fit[key]) for key in fit.index if key.startswith("n_")}
+    if not count["n_compared"]:
+        tried = f": of {count['n_tried']} patches none was found again" if count["n_tried"] else ""
+        return f"No ground was compared that two of {count['n_scans']} scans show{tried}."
+    after, before, pixel = (float(fit[key]) for key in ("rms_after_m", "rms_before_m", "pixel_m"))
+    left_out = ", ".join(f"{count[key]} {words}" for key, words in _LEFT_OUT.items() if count[key])
+    return (
+        f"Overlapping scans lie {after * _MM:.0f} mm apart on the map, {after / pixel:.1f} pixels (RMS), and "
+        f"{before * _MM:.0f} mm, {before / pixel:.1f} pixels, at the hand-measured pose: {count['n_compared']} patches "
+        f"of {count['n_pairs']} pairs of scans" + (f" ({left_out})." if left_out else ".")
+    )
 
 
 def _of_rasters(made: ScanMap) -> list[str]:

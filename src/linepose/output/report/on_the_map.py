@@ -5,7 +5,9 @@ from typing import Final
 import pandas as pd
 
 from linepose.output.map.budget import ALL, BUDGET
+from linepose.output.map.strip_fit import FIT
 from linepose.output.map.tables import MAPPED
+from linepose.output.map.words import fit_sentence
 from linepose.output.report.sections import SectionOnPage, TableOnPage
 from linepose.pipeline.calibration import Calibration
 
@@ -26,7 +28,10 @@ def map_section(calibration: Calibration) -> SectionOnPage | None:
     scans = calibration.results.table("map_scans", MAPPED)
     anchor = f"{calibration.name}-map"
     tables = [_budget_table(f"{anchor}-budget", budget), _pixel_table(f"{anchor}-pixels", scans)]
-    return SectionOnPage(anchor, "On the map", _text(budget, scans), tables)
+    text = _text(budget, scans)
+    if calibration.results.has("strip_fit"):
+        text += f"\n\n{fit_sentence(calibration.results.table('strip_fit', FIT).iloc[0])}"
+    return SectionOnPage(anchor, "On the map", text, tables)
 
 
 def _text(budget: pd.DataFrame, scans: pd.DataFrame) -> str:

@@ -3,8 +3,11 @@
 import pandas as pd
 import pytest
 
+from linepose.output.figures import strip_fit
+from linepose.output.figures.render import render_figures
 from linepose.output.map.budget import ALL, AS_REPORTED
 from linepose.output.map.sources import SOURCES
+from linepose.output.map.strip_fit import FIT_TABLES
 from linepose.output.map.tables import MAP_TABLES
 from linepose.output.report.on_the_map import map_section
 from linepose.pipeline.calibration import Calibration
@@ -50,3 +53,35 @@ def test_no_section_where_there_are_no_maps(tmp_path, changes):
     assert map_section(Calibration.from_results(tmp_path, made_up.platform(**changes))) is None
     if not changes:
         assert section_of(tmp_path, BUDGET) is None
+
+
+FIT_ROW = {"n_scans": 3, "n_pairs": 2, "n_tried": 40, "n_uncorrelated": 5, "n_contradicted": 4, "n_without_ground": 1}
+FIT_ROW |= {"n_compared": 30, "pixel_m": 0.04, "rms_before_m": 0.8, "rms_after_m": 0.06}
+
+
+def fit_written(folder, **changes):
+    fit = pd.DataFrame([FIT_ROW | changes])
+    write_table(fit, folder / "strip_fit.parquet", FIT_TABLES["strip_fit"])
+    values = [20.0, 30.0, 10.0, 50.0, 0.9, 7.0, 8.0, 0.5, 0.1, 0.03, -0.02]
+    patches = pd.DataFrame([["a", "b", *values], ["a", "c", *values]], columns=FIT_TABLES["strip_patches"].names)
+    write_table(patches.head(fit["n_compared"][0]), folder / "strip_patches.parquet", FIT_TABLES["strip_patches"])
+
+
+def test_misfit_is_told_in_millimetres_and_pixels_with_what_was_left_out(tmp_path):
+    fit_written(tmp_path)
+    assert section_of(tmp_path, BUDGET, map={}).paragraphs[-1] == (
+        "Overlapping scans lie 60 mm apart on the map, 1.5 pixels (RMS), and 800 mm, 20.0 pixels, at the hand-measured "
+        "pose: 30 patches of 2 pairs of scans (5 more were not found again, 4 lie where their neighbours do not say, 1 "
+        "see no ground)."
+    )
+    fit_written(tmp_path, n_compared=0)
+    assert "of 40 patches none was found again" in section_of(tmp_path, BUDGET, map={}).text
+
+
+@pytest.mark.parametrize("n_compared", [30, 0])
+def test_misfit_is_drawn_on_the_map_even_where_there_is_none(tmp_path, n_compared):
+    fit_written(tmp_path, n_compared=n_compared)
+    calibration = Calibration.from_results(tmp_path, made_up.platform(map={}))
+    index = render_figures(calibration, tmp_path / "figures", strip_fit.FIGURES)
+    assert index["left_out"].tolist() == [""]
+    assert (tmp_path / "figures" / "strip_fit.png").stat().st_size > 5000
