@@ -51,7 +51,7 @@ def head_killed(folder: Path, expected: Path) -> list[str]:
     jobs_at_work(project)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    at_work = (slurm("squeue", "--me", "--noheader", "--states=RUNNING", "--format=%A") or "").split()
+    at_work = running_jobs(project)
     before = (project / "run.log").read_text()
     ended(start(project, *SLURM, CELL), project)
     after = (project / "run.log").read_text().removeprefix(before)
@@ -74,13 +74,19 @@ def too_little_memory(folder: Path) -> list[str]:
 
 
 def jobs_at_work(project: Path) -> list[str]:
-    """Numbers of this user's jobs, once parts of the cell are at work."""
+    """Numbers of a project's jobs, once parts of its cell are at work."""
     deadline = time.monotonic() + PATIENCE_S
     while "rule coverage_part" not in (project / "run.log").read_text():
         wait_until(deadline, project)
-    while not (jobs := (slurm("squeue", "--me", "--noheader", "--states=RUNNING", "--format=%A") or "").split()):
+    while not (jobs := running_jobs(project)):
         wait_until(deadline, project)
     return jobs
+
+
+def running_jobs(project: Path) -> list[str]:
+    """Numbers of a project's jobs that are at work."""
+    rows = (slurm("squeue", "--noheader", "--states=RUNNING", "--format=%A|%Z") or "").split()
+    return [row.partition("|")[0] for row in rows if row.endswith(f"|{project}")]
 
 
 def wait_until(deadline: float, project: Path) -> None:

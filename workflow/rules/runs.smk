@@ -1,4 +1,5 @@
 # How a run begins and ends, on this machine or with jobs on others, and what jobs ask of a scheduler.
+import json
 import os
 import sys
 from importlib.util import find_spec
@@ -8,9 +9,10 @@ from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 
 if find_spec("linepose") is None:
+    expected = json.loads(os.environ.get("LINEPOSE_HEAD", "{}")).get("version", "")
     raise WorkflowError(
-        f"linepose: node {os.uname().nodename}: found no package linepose in {sys.executable}, expected the one that "
-        f"planned: {os.environ.get('LINEPOSE_HEAD', 'pip show linepose tells it')}; install that version there"
+        f"linepose: node {os.uname().nodename}: found no package linepose in {sys.executable}, expected "
+        f"linepose {expected or 'there'}; install it for that Python, or name another one's snakemake"
     )
 
 from linepose.errors import LineposeError
