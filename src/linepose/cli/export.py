@@ -29,6 +29,9 @@ def export(
     body_axes: Annotated[
         str, typer.Option(help="flu or frd: forward, left, up or forward, right, down.", show_default="of the format")
     ] = "",
+    scan: Annotated[
+        str, typer.Option(help="Name of the scan, of formats that hold one.", show_default="the only one")
+    ] = "",
     stage: Annotated[str, typer.Option(help="inliers, all, or hand_measured.")] = "inliers",
     _: Annotated[
         bool, typer.Option("--list", callback=_tell_formats, is_eager=True, help="Tell the formats and end.")
@@ -55,7 +58,7 @@ def export(
     target = output or folder / "exports"
     if output is None:
         target.mkdir(exist_ok=True)
-    options = export_options(parent_frame, child_frame, body_axes)
+    options = export_options(parent_frame, child_frame, body_axes, scan)
     calibration = Calibration.from_results(
         folder, loaded.platforms[name], loaded.study.outliers.threshold_px, stage, root / loaded.folder(name)
     )

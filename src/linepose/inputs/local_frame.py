@@ -95,9 +95,7 @@ def local_from_geodetic(frame: LocalFrame, geodetic: ArrayLike) -> tuple[Floats,
         about_down = np.stack([np.zeros_like(height), np.zeros_like(height), -convergence], axis=-1)
         return np.stack([north, east, -height], axis=-1), rotations.matrix_from_euler(about_down)
     enu = np.stack(_topocentric(frame.origin).transform(longitude, latitude, height), axis=-1)
-    return enu @ NED_FROM_ENU.T, _ecef_from_ned(frame.origin[0], frame.origin[1]).T @ _ecef_from_ned(
-        latitude, longitude
-    )
+    return enu @ NED_FROM_ENU.T, ecef_from_ned(frame.origin[0], frame.origin[1]).T @ ecef_from_ned(latitude, longitude)
 
 
 def geodetic_from_local(frame: LocalFrame, position_m: ArrayLike) -> Floats:
@@ -127,7 +125,7 @@ def check_geodetic(geodetic: Floats, place: str) -> None:
         )
 
 
-def _ecef_from_ned(latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> Floats:
+def ecef_from_ned(latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> Floats:
     """Matrices (..., 3, 3) whose columns are north, east and down in Earth-fixed axes."""
     latitude, longitude = np.deg2rad(latitude_deg), np.deg2rad(longitude_deg)
     sin_lat, cos_lat, sin_lon, cos_lon = np.sin(latitude), np.cos(latitude), np.sin(longitude), np.cos(longitude)

@@ -321,7 +321,7 @@ class Calibration:
 
         `format` is one of `linepose export --list`; `path` a file, or a folder in which one is named after platform and
         format. `options` are the fields of `ExportOptions`: parent_frame, child_frame,
-        body_axes. Raises InputError for an unknown format, and for results that the format needs and that are missing.
+        body_axes, scan. Raises InputError for an unknown format, and for results that it needs and that are missing.
         """
         return export_calibration(self, format, Path(path), ExportOptions(**options))
 

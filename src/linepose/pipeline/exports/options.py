@@ -16,17 +16,19 @@ AXES_IN_WORDS: Final[dict[BodyAxes, str]] = {
 _FRAME_NAME: Final = re.compile(r"[A-Za-z0-9_]([A-Za-z0-9_/.-]*[A-Za-z0-9_])?")
 
 
-def export_options(parent_frame: str, child_frame: str, body_axes: str) -> "ExportOptions":
-    """The options that words of a command line give; no body axes for those of the format."""
+def export_options(parent_frame: str, child_frame: str, body_axes: str, scan: str = "") -> "ExportOptions":
+    """The options that words of a command line give; no body axes for those of the format, no scan for the only one."""
     axes: dict[str, BodyAxes | None] = {"": None, "frd": "frd", "flu": "flu"}
     if body_axes not in axes:
         raise InputError("body axes", repr(body_axes), "frd or flu", "correct it")
-    return ExportOptions(parent_frame, child_frame, axes[body_axes])
+    return ExportOptions(parent_frame, child_frame, axes[body_axes], scan or None)
 
 
 @dataclass(frozen=True)
 class ExportOptions:
     """Names of the body's and the camera's frame, and the body's axes; none for what the format is used with.
+
+    `scan` names the scan of a format that holds one, without its ending; none for the only one.
 
     Raises InputError for a name that ROS would not take, for two equal names, and for unknown axes.
     """
@@ -34,6 +36,7 @@ class ExportOptions:
     parent_frame: str = "base_link"
     child_frame: str = "line_camera_optical"
     body_axes: BodyAxes | None = None
+    scan: str | None = None
 
     def __post_init__(self) -> None:
         for key, name in (("parent frame", self.parent_frame), ("child frame", self.child_frame)):
