@@ -15,6 +15,7 @@ from typing import Final
 
 import numpy as np
 
+from linepose.adjustment.estimate import unit_weights
 from linepose.adjustment.iterative import Equations, Preconditioner, blocks, conjugate_gradients, equations, smooth
 from linepose.adjustment.levels import Levels, levels_from_log
 from linepose.adjustment.linearise import empty_linearised, linearise
@@ -135,6 +136,30 @@ def solve_many(
     nothing = np.full((N_CAMERA, N_CAMERA), np.nan)
     known = _camera_covariance(system, inverse) if covariance else nothing
     return ManySolution(state, known, whitened, z, q, weights, chi_squared, steps, converged)
+
+
+def covariance_of_many(measurements: Measurements, knowledge: Knowledge, state: State, levels: Levels) -> Floats:
+    """Covariance (10, 10) of the camera's columns at a state and levels, which need not be a minimum.
+
+    Raises EstimationError where a point lies behind the camera, or the normal equations cannot be solved.
+    """
+    linearised = empty_linearised(len(measurements.u_px))
+    if linearise(
+        measurements.u_px,
+        state.body_poses(measurements),
+        knowledge.rates(measurements),
+        measurements.point,
+        state.points_m,
+        measurements.known.shifts,
+        state.optics(knowledge.camera),
+        linearised,
+    ):
+        raise behind_at_start(measurements, state.pose, state.points_m)
+    structure = measurements.structure
+    process = components(structure, error_image(structure, linearised), levels, unit_weights(measurements))
+    factor = factorise(process, structure.view_of, structure.begins)
+    system = equations(linearised, measurements.point, factor, knowledge.prior(state, measurements))
+    return _camera_covariance(system, Preconditioner(blocks(system), smooth(system, state.points_m)))
 
 
 def _camera_covariance(system: Equations, inverse: Preconditioner) -> Floats:

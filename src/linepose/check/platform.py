@@ -16,6 +16,7 @@ from linepose.check.conventions.examine import HandSigmas
 from linepose.check.conventions.findings import agreed, convention_findings
 from linepose.check.exchanges import exchange_findings
 from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, error, of_fault, ok
+from linepose.check.flight import flight_findings
 from linepose.check.hand_measured import hand_findings
 from linepose.check.labels import count_findings, position_findings
 from linepose.check.motion import motion_findings
@@ -97,7 +98,11 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
     with readers_warnings() as told:
         more, points, observations = recorded_findings(loaded, platform, root)
     findings += [*more, *told]
-    if observations is None or any(finding.level == Level.ERROR for finding in findings):
+    faulty = any(finding.level == Level.ERROR for finding in findings)
+    if settings.flight is not None and points is None and observations is None and not faulty:
+        more, sigmas = flight_findings(settings)
+        return CheckReport(platform, (*findings, *more), sigmas)
+    if observations is None or faulty:
         return CheckReport(platform, tuple(findings))
     more, known = point_findings(settings, root / loaded.folder(platform), observations)
     findings += more
@@ -264,7 +269,7 @@ def _column_findings(settings: Platform, path: Path) -> list[Finding]:
 def _simulated(settings: Platform) -> tuple[list[Finding], pd.DataFrame | None]:
     """A simulated platform that has not been run: its geometry can be checked all the same."""
     if settings.flight is not None:
-        return [ok("data set", "a simulated flight, not made yet: checked after `linepose run`")], None
+        return [ok("data set", "a simulated flight, not made yet: its strips are checked as they are planned")], None
     if settings.simulation is None:
         return [], None
     survey, _ = simulate_survey(settings.intrinsics(), settings.simulation, settings.simulation.seed)

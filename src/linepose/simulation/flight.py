@@ -108,9 +108,9 @@ def simulate_flight(settings: FlightSettings, seed: int | np.random.Generator) -
         focal_length_m=camera.focal_length_m + off[1] * camera.sigmas.focal_length_m,
     )
     motion = StripMotion.drawn(settings.strips, settings.speed_m_s, settings.turn_s, random)
-    points = _candidates(settings, random)
+    points = points_below(settings, random)
     time_s, u_px = crossing_times(motion, true_camera, pose, points)
-    seen = _thinned(np.isfinite(u_px), settings.most_strips, random)
+    seen = thinned(np.isfinite(u_px), settings.most_strips, random)
     kept = np.flatnonzero(seen.sum(axis=0) >= settings.fewest_strips)[: settings.n_points]
     points, time_s, u_px, seen = points[kept], time_s[:, kept], u_px[:, kept], seen[:, kept]
     row, column = np.nonzero(seen)
@@ -151,7 +151,7 @@ def simulate_flight(settings: FlightSettings, seed: int | np.random.Generator) -
     )
 
 
-def _candidates(settings: FlightSettings, random: np.random.Generator) -> Floats:
+def points_below(settings: FlightSettings, random: np.random.Generator) -> Floats:
     """Points on the ground (C, 3) below and beside the strips, more than are asked for."""
     ends = np.concatenate([strip.ends(settings.speed_m_s) for strip in settings.strips])
     margin = 0.2 * max(strip.height_m for strip in settings.strips)
@@ -160,7 +160,7 @@ def _candidates(settings: FlightSettings, random: np.random.Generator) -> Floats
     return np.column_stack([along, settings.relief_m * random.standard_normal(count)])
 
 
-def _thinned(seen: np.ndarray, most: int, random: np.random.Generator) -> np.ndarray:
+def thinned(seen: np.ndarray, most: int, random: np.random.Generator) -> np.ndarray:
     """At most so many strips a point, drawn among those that see it (N, M)."""
     rank = np.argsort(np.argsort(np.where(seen, random.random(seen.shape), 2.0), axis=0), axis=0)
     return seen & (rank < most)

@@ -276,3 +276,11 @@ def test_simulated_platform_is_checked_before_it_is_made(project, platforms_fold
     report = check_platform("sim", project)
     assert report.level < Level.ERROR
     assert len(report.predicted) == 6
+
+
+def test_planned_strips_are_checked_before_they_are_flown(project, platforms_folder):
+    (project / "config" / "platforms" / "drone.yaml").write_text((platforms_folder / "drone-sim.yaml").read_text())
+    report = check_platform("drone", project)
+    assert report.level == Level.OK
+    assert len(report.predicted) == 6
+    assert [one.found[:9] for one in report.findings if one.subject == "planned strips"] == ["10 strips"]
