@@ -36,6 +36,7 @@ _TOLERANCE: Final = 1e-6  # of chi squared
 _PRECISION: Final = 1e-3  # of a step, in the preconditioner's norm; what is left the next step takes
 _COVARIANCE_PRECISION: Final = 1e-4
 _MOST_STEPS: Final = 30
+_LARGEST_MOVE: Final = 0.3  # of a point, in distances from the nearest body
 _LOOSE: Final = 1e-2  # of chi squared, where weights move
 _WEIGHT_TOLERANCE: Final = 0.1  # of a logarithm
 _LEAST_SPREAD: Final = 1e-6  # of a level's logarithm, below which it was not estimated
@@ -131,11 +132,26 @@ def solve_many(
         converged = gain < (_LOOSE if tails else _TOLERANCE) and settled
         if converged or steps >= _MOST_STEPS:
             break
-        state, steps = state.moved(step, correction), steps + 1
+        state, steps = state.moved(_held(step, state, measurements), correction), steps + 1
     chi_squared = float(np.sum(whitened**2)) + system.prior.chi_squared
     nothing = np.full((N_CAMERA, N_CAMERA), np.nan)
     known = _camera_covariance(system, inverse) if covariance else nothing
     return ManySolution(state, known, whitened, z, q, weights, chi_squared, steps, converged)
+
+
+def _held(step: Floats, state: State, measurements: Measurements) -> Floats:
+    """The step (3 K + 10,) with no point moved by more than a share of its distance from the nearest body that saw it.
+
+    Of two nearly parallel rays, one of which is a wrong match, the linear model throws the point behind the camera
+    before the match has lost its weight.
+    """
+    away = np.linalg.norm(state.points_m[measurements.point] - measurements.body_pose[:, :3], axis=1)
+    nearest = np.full(measurements.n_points, np.inf)
+    np.minimum.at(nearest, measurements.point, away)
+    points = step[:-N_CAMERA].reshape(-1, 3)
+    length = np.linalg.norm(points, axis=1)
+    share = np.minimum(1.0, _LARGEST_MOVE * nearest / np.maximum(length, np.finfo(float).tiny))
+    return np.concatenate([(share[:, None] * points).ravel(), step[-N_CAMERA:]])
 
 
 def covariance_of_many(measurements: Measurements, knowledge: Knowledge, state: State, levels: Levels) -> Floats:

@@ -68,7 +68,7 @@ def test_predicted_sigmas_are_those_of_an_adjustment():
     flight = simulate_flight(FlightSettings(n_points=N_POINTS), 12)
     known = LevelPriors(median=Levels(1.0, 0.3, 0.01, 1.0, 0.5, 60.0, 1.0), log_sigma=Levels(*[0.05] * 7))
     quick = AdjustmentSettings(
-        priors=known, n_draws=8, n_samples=10, max_rounds=2, tails=False, line_period_s=flight.line_period_s
+        priors=known, n_draws=10, n_samples=10, max_rounds=2, tails=False, line_period_s=flight.line_period_s
     )
     found = adjust(flight.survey, flight.camera, flight.hand_pose, flight.hand_covariance, quick)
     _, covariance = in_body_axes(POSE_COLUMNS, found.pose, found.covariance)
