@@ -35,7 +35,7 @@ rule one:
 """
 QUICK = {
     "like": "ladybird-sim",
-    "experiments": dict.fromkeys(["basin", "repeatability", "sensitivity", "adjustment_beside", "splits"]),
+    "experiments": dict.fromkeys(["basin", "repeatability", "sensitivity", "adjustment_beside"]),
 }
 REGIME = {"white": {"white_level": 1.0, "noise_models": ["published"]}}
 
