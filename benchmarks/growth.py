@@ -25,7 +25,7 @@ PLATFORMS = (1, 10, 100)
 PROCESSES = (1, 2)
 NODES, CORES_OF_A_NODE = 100, 16
 CELLS, SURVEYS = 44, 200  # of the coverage study
-SUBMISSION_S = 0.3  # that sbatch takes the head process for a job, on a SLURM of one machine
+SUBMISSION_S = 0.3  # assumed: what sbatch takes the head process for a job
 TRIVIAL = """\
 rule all:
     input: expand("{{number}}.done", number=range({jobs}))
@@ -125,7 +125,7 @@ def expected(overhead_s: float, survey_s: float, start_s: float, rows: list[str]
         f"By calculation, the coverage study of {CELLS} cells of {SURVEYS} surveys: {survey_s:.2f} s of one core",
     ]
     rows += [f"a survey, start-up included; {2 * start_s:.1f} s for the two starts of Snakemake that a job on a node"]
-    rows += [f"begins with; {SUBMISSION_S} s to submit it.", ""]
+    rows += [f"begins with; {SUBMISSION_S} s, assumed, to submit it.", ""]
     rows += ["| where | jobs | work on each core | handing out jobs | all |", "| --- " * 5 + "|"]
     for where, cores, parts, cost_s, handed_s in (
         ("2 cores, locally", 2, 4, 0.0, overhead_s),
