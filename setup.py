@@ -1,6 +1,7 @@
 """Build the wheel with the workflow, of which the repository has one copy, in the package's folder `workflow`."""
 
 from pathlib import Path
+from shutil import rmtree
 from typing import Final
 
 from setuptools import setup
@@ -25,6 +26,7 @@ class BuildWithWorkflow(build_py):
         if self.editable_mode:
             return
         root = Path(__file__).parent
+        rmtree(Path(self.build_lib, "linepose", "workflow"), ignore_errors=True)  # of an earlier build
         for source in sorted(path for pattern in CARRIED for path in root.glob(pattern)):
             target = Path(self.build_lib, "linepose", "workflow", source.relative_to(root))
             target.parent.mkdir(parents=True, exist_ok=True)

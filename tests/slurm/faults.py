@@ -69,7 +69,7 @@ def too_little_memory(folder: Path) -> list[str]:
     project = tiny(folder / "memory", N_SURVEYS)
     process = start(project, *SLURM, "--retries", "0", "--set-resources", "compile:mem_mb=60", "--", CELL)
     if process.wait(PATIENCE_S) == 0:
-        return ["60 MB were enough: this SLURM does not hold jobs to their memory"]
+        sys.exit("slurm-test: found a job that 60 MB were enough for, expected that SLURM ends it")
     return [f"too little memory: {one_line(project, 'OUT_OF_MEMORY')}"]
 
 

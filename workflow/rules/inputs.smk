@@ -17,6 +17,7 @@ for key in PROJECT.datasets:
             f"results/logs/fetch_{key}.log",
         conda:
             "../../environment.yml"
+        localrule: True  # nodes of a cluster often reach no network
         resources:
             **LIGHT,
         params:

@@ -22,12 +22,13 @@ from linepose.pipeline.cluster.slurm import (
     check_asked,
     ended_jobs,
     largest_node,
+    may_begin_again,
     wait_for_earlier_jobs,
 )
 from linepose.pipeline.parent_process import COMMAND, SNAKEMAKE, exit_with_process
 from linepose.pipeline.run_lock import check_no_run, hold_run_lock
 
-# What a job asks of a scheduler, memory in MB and time in minutes; more with each attempt, after SLURM has ended one.
+# What a job asks of a scheduler, memory in MB and time in minutes; more with each attempt.
 # Measured: 170 to 450 MB, and up to 770 in batches on two cores; Snakemake takes 300 MB beside it on a node.
 LIGHT = {
     "mem_mb": lambda wildcards, attempt: 1000 * attempt,
@@ -60,11 +61,11 @@ def asked_of_nodes():
     ]
 
 
-def tell_ended_jobs(log, mended):
+def tell_ended_jobs(log):
     """One line on the error stream for each job that SLURM ended."""
     files = [Path(file) for file in ([log] if isinstance(log, str) else log or [])]
     for file in filter(Path.is_file, files):
-        for line in ended_jobs(file.read_text(), mended):
+        for line in ended_jobs(file.read_text()):
             print(line, file=sys.stderr)
 
 
@@ -80,12 +81,16 @@ onstart:
     except LineposeError as error:
         raise SystemExit(f"linepose: {error}") from None  # told on the error stream
     if others:  # plan anew, with what these have made
+        if not may_begin_again(sys.argv):
+            raise SystemExit(
+                "linepose: the jobs of the earlier run have ended; start the same command again"
+            )
         os.execv(sys.executable, sys.orig_argv)
 
 
 onsuccess:
-    tell_ended_jobs(log, mended=True)
+    tell_ended_jobs(log)
 
 
 onerror:
-    tell_ended_jobs(log, mended=False)
+    tell_ended_jobs(log)

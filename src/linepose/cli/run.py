@@ -1,6 +1,7 @@
 """`linepose run NAME`: the workflow for one platform or several, Snakemake as a subprocess."""
 
 import json
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -95,6 +96,7 @@ def _run(snakefile: Path, root: Path, chosen: Sequence[str], arguments: Sequence
     logs = root / "results" / "logs"
     log = logs / "run.log" if several else logs / chosen[0] / "run.log"
     console, lines = Console(stderr=True), PlatformLines(root, len(chosen)) if several else StageLines()
+    begun_s = time.time()
 
     def tell(line: str | None) -> None:
         if line is not None:
@@ -113,6 +115,9 @@ def _run(snakefile: Path, root: Path, chosen: Sequence[str], arguments: Sequence
             code = follow_snakemake(snakefile, root, arguments, log, hear, show)
     else:
         code = follow_snakemake(snakefile, root, arguments, log, lambda message: tell(lines.hear(message)))
+    if isinstance(lines, PlatformLines):
+        for line in lines.unheard(chosen, begun_s):
+            tell(line)
     if code:
         for line in [] if lines.told_why else lines.unexplained:
             tell(line)

@@ -1,5 +1,7 @@
 """Snakemake's messages of a run of several platforms, and the lines that a person sees of them."""
 
+import os
+
 import pytest
 
 from linepose.cli.platform_lines import PlatformLines
@@ -40,3 +42,29 @@ def test_what_failed_is_told_by_its_own_log_and_not_by_another_stages_word(told,
     ]
     log.unlink()
     assert told(FAILED) == ["extract failed: it ended without a word (results/logs/b/extract.log)"]
+
+
+def test_a_failure_on_a_node_is_told_by_the_rules_log_though_the_executors_stands_behind_it(told, tmp_path):
+    log = tmp_path / "results" / "logs" / "b" / "extract.log"
+    log.parent.mkdir(parents=True)
+    log.write_text("linepose.extract: data/b.csv: row 3: found x, expected a number; correct it\n")
+    of_node = FAILED.replace("extract.log (", "extract.log, /p/.snakemake/slurm_logs/rule_extract/4.log (")
+    assert told(of_node.replace("Error in", "    Error in")) == [
+        "extract failed: data/b.csv: row 3: found x, expected a number; correct it (results/logs/b/extract.log)"
+    ]
+
+
+def test_pages_that_nodes_wrote_are_told_at_the_end(tmp_path, monkeypatch):
+    """Of those that were written in this run, and were not told when they were."""
+    lines = PlatformLines(tmp_path, 3)
+    lines.hear("linepose.report: a: Use this pose: every check passed. 1.2 MB")
+    for name, written_s in (("a", 200), ("b", 200), ("c", 50)):
+        summary = tmp_path / "results" / name / "summary.json"
+        summary.parent.mkdir(parents=True)
+        summary.write_text(name)
+        os.utime(summary, (written_s, written_s))
+    verdict = type("", (), {"sentence": "Do not use this pose."})
+    monkeypatch.setattr(
+        "linepose.output.report.summary_file.read_summary", lambda path: type("", (), {"verdict": verdict})
+    )
+    assert lines.unheard(["a", "b", "c"], since_s=100.0) == ["2/3 b: Do not use this pose."]

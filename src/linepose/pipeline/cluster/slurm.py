@@ -4,7 +4,7 @@ import re
 import shutil
 import subprocess
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -14,8 +14,9 @@ from linepose.errors import InputError
 _PLACE: Final = "SLURM"
 _LOGS: Final = Path(".snakemake", "slurm_logs")
 _ANSWER_WITHIN_S: Final = 30
-_SUBMITTED: Final = re.compile(r"has been submitted with SLURM jobid (\d+) \(log: (.+)\)")
-_ENDED: Final = re.compile(r"SLURM-job '(\d+)' failed, SLURM status is: '(\w+)'")
+_COMMENT: Final = "rule_"  # with which the executor's jobs are marked
+_SUBMITTED: Final = re.compile(r"Job (\S+) has been submitted with SLURM jobid (\d+) \(log: (.+)\)")
+_ENDED: Final = re.compile(r"SLURM-job '(\d+)' failed(?: due to a node failure)?, SLURM status is: '(\w+)'")
 _TOLD: Final = re.compile(r"\s*linepose(?:\.\w+)*: (.*\bfound .*)")
 _MEMORY: Final = re.compile(r"exceeded (?:job |step )?memory limit|oom[-_ ]kill", re.IGNORECASE)
 _REMEDIES: Final = {
@@ -61,7 +62,7 @@ def check_asked(jobs: Iterable[Asked], largest: Largest) -> None:
     for job in jobs:
         if job.cores > largest.cores:
             found, expected = f"{job.cores} cores asked for", f"at most {largest.cores}, as the largest node here has"
-            raise InputError(job.rule, found, expected, f"set --cores and --max-threads to {largest.cores}")
+            raise InputError(job.rule, found, expected, f"set cores and max-threads of the profile to {largest.cores}")
         if job.memory_mb > largest.memory_mb:
             found, most = f"{job.memory_mb} MB asked for", largest.memory_mb
             remedy = f"give it less with --set-resources {job.rule}:mem_mb={most}"
@@ -72,45 +73,72 @@ def wait_for_earlier_jobs(root: Path, tell: Callable[[str], None], look_s: float
     """Wait for what a killed run left at work on SLURM in this folder; whether there was any.
 
     Jobs that have not begun are taken back, as nothing of them is lost; those at work go on, as what they make counts.
+    Other jobs in the folder are left alone. Where SLURM does not answer, that is told and nothing awaited.
     """
     if not (root / _LOGS).is_dir() or shutil.which("squeue") is None:
         return False
-    if not (jobs := _jobs_of(root)):
+    try:
+        if not (jobs := _jobs_of(root)):
+            return False
+        _answer("scancel", "--state=PENDING", *jobs)
+        many = f"{len(jobs)} job{'s' if len(jobs) > 1 else ''}"
+        tell(f"linepose: {many} of an earlier run on SLURM: those that wait are taken back, the others awaited")
+        while _jobs_of(root):
+            time.sleep(look_s)
+    except InputError as error:
+        tell(f"linepose: {error}; jobs of an earlier run in this folder are not awaited")
         return False
-    _answer("scancel", "--state=PENDING", *jobs)
-    tell(f"linepose: {len(jobs)} jobs of an earlier run on SLURM: those that wait are taken back, the others awaited")
-    while _jobs_of(root):
-        time.sleep(look_s)
     return True
 
 
-def ended_jobs(log: str, mended: bool) -> list[str]:
-    """One line for each job that SLURM did not see to its end, from Snakemake's log of a run.
+def may_begin_again(arguments: Sequence[str]) -> bool:
+    """Whether a command of Snakemake's, given again, finds its files from the folder that it has gone into."""
+    for word, after in zip(arguments, [*arguments[1:], ""], strict=True):
+        option, sign, value = word.partition("=")
+        if option in {"--directory", "-d"} and not Path(value if sign else after).is_absolute():
+            return False
+    return True
 
-    `mended`: whether the run came to its end all the same, as such jobs are tried again.
-    """
-    logs = dict(_SUBMITTED.findall(log))
+
+def ended_jobs(log: str) -> list[str]:
+    """One line for each job of a run that SLURM ended, from Snakemake's log, and whether it was tried again since."""
+    submitted = _SUBMITTED.findall(log)
+    logs = {number: Path(file) for _, number, file in submitted}
+    job_of = {number: job for job, number, _ in submitted}
+    last_of = {job: number for job, number, _ in submitted}
     ended = dict(_ENDED.findall(log))
-    return [_told(number, state, Path(logs.get(number, "")), mended) for number, state in ended.items()]
+    last = {number: last_of.get(job_of.get(number, ""), number) for number in ended}
+    mended = {number: last[number] not in ended for number in ended}
+    return [
+        _told(number, state, logs.get(number, Path()), mended[number])
+        for number, state in ended.items()
+        if mended[number] or last[number] == number  # of several in vain the last alone
+    ]
 
 
 def _told(number: str, state: str, log: Path, mended: bool) -> str:
     """What became of a job: its own words where it has some, else SLURM's."""
-    known = subprocess.run(
-        ["scontrol", "--oneliner", "show", "job", number], capture_output=True, text=True, check=False, timeout=30
-    ).stdout
-    node = re.search(r"\bNodeList=([^(\s]\S*)", known)
     place = f"SLURM job {number} ({log.parent.relative_to(log.parents[2]) if len(log.parts) > 3 else 'no log'})"
-    place += f" on {node[1]}" if node else ""
+    place += f" on {node}" if (node := _node_of(number)) else ""
     words = [found[1] for found in map(_TOLD.match, _lines(log)) if found]
     if any(_MEMORY.search(line) for line in _lines(log)):
         state = "OUT_OF_MEMORY"
     if mended:
-        return f"linepose: {place}: found {words[-1] if words else state}; it was tried again, nothing is lost"
+        return f"linepose: {place}: {words[-1] if words else f'found {state}'}; it was tried again, nothing is lost"
     if words:
         return f"linepose: {place}: {words[-1]}"
     remedy = _REMEDIES.get(state, f"read {log}" if log.is_file() else "see whether its node has this folder")
     return f"linepose: {InputError(place, state, 'COMPLETED', remedy)}"
+
+
+def _node_of(number: str) -> str | None:
+    """The node on which a job was; None where SLURM does not say."""
+    try:
+        known = _answer("scontrol", "--oneliner", "show", "job", number)
+    except (InputError, OSError):
+        return None
+    found = re.search(r"\bNodeList=([^(\s]\S*)", known)
+    return found[1] if found else None
 
 
 def _lines(log: Path) -> list[str]:
@@ -118,10 +146,13 @@ def _lines(log: Path) -> list[str]:
 
 
 def _jobs_of(root: Path) -> list[str]:
-    """Numbers of this user's jobs that wait or are at work in a project's folder."""
-    rows = _answer("squeue", "--me", "--noheader", "--format=%A|%Z").splitlines()
-    jobs = (row.split("|", 1) for row in rows)
-    return [number for number, folder in jobs if Path(folder).resolve() == root.resolve()]
+    """Numbers of this user's jobs that Snakemake's executor handed out and that wait or are at work in a folder."""
+    rows = (row.split("|", 2) for row in _answer("squeue", "--me", "--noheader", "--format=%A|%Z|%k").splitlines())
+    return [
+        number
+        for number, folder, comment in rows
+        if comment.startswith(_COMMENT) and Path(folder).resolve() == root.resolve()
+    ]
 
 
 def _answer(*command: str) -> str:
