@@ -42,9 +42,10 @@ def same_bits(table: pa.Table) -> bytes:
 @pytest.mark.workflow
 def test_each_platform_keeps_its_page_and_its_numbers(copied):
     folder, results = copied.folder, copied.folder / "results"
-    copied.configure(STUDY | {"platforms": ["tiny", "second"]}, {"tiny": TINY, "second": TINY})
+    copied.configure(STUDY | {"platforms": ["tiny", "sec*"]}, {"tiny": TINY, "second": TINY})
     before, shown = digests(results / "tiny"), linepose(folder, "show", "tiny")
     linepose(folder, "run", "second", "--cores", "1")
+    assert "done: 2 platforms" in linepose(folder, "run", "--all", "--cores", "1")  # and nothing of the first again
     assert digests(results / "tiny") == before
     assert linepose(folder, "show", "tiny") == shown
     assert str(results / "tiny" / "report.html") in shown
@@ -52,6 +53,7 @@ def test_each_platform_keeps_its_page_and_its_numbers(copied):
     assert "second" not in (results / "tiny" / "report.html").read_text()
     study = (results / "report.html").read_text()
     assert all(f'href="{name}/report.html"' in study for name in ("tiny", "second"))
+    assert "2 platforms, those that need a look first" in study
     paths = sorted(path.relative_to(results / "tiny") for path in (results / "tiny").rglob("*.parquet"))
     assert paths == sorted(path.relative_to(results / "second") for path in (results / "second").rglob("*.parquet"))
     for path in (path for path in paths if path.parts[0] != "figures"):  # whose captions name the platform

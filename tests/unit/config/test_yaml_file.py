@@ -1,9 +1,15 @@
 """YAML that PyYAML takes for something else than was meant, or fails on outside its own errors."""
 
-import pytest
+from pathlib import Path
 
-from linepose.config.yaml_file import parsed_yaml
+import pytest
+import yaml
+
+from linepose.config import yaml_file
+from linepose.config.yaml_file import _parser_of, parsed_yaml
 from linepose.errors import InputError
+
+ROOT = Path(__file__).parents[3]
 
 BOMB = "a0: &a0 [x, x, x, x, x, x, x, x]\n" + "".join(
     f"a{one}: &a{one} [{', '.join([f'*a{one - 1}'] * 8)}]\n" for one in range(1, 12)
@@ -33,6 +39,20 @@ def test_is_one_line(text, told):
     assert told in str(caught.value)
     assert str(caught.value).startswith("a.yaml")
     assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize("text", ["[" * 60, "[" * 200_000, "{a: " * 200_000, "- " * 200_000])
+def test_text_that_is_too_deep_never_reaches_the_parser_without_bounds(text):
+    with pytest.raises(InputError, match=r"a\.yaml, line 1: found lists in lists"):
+        _parser_of(text, "a.yaml")
+
+
+def test_both_parsers_read_the_same(monkeypatch):
+    texts = [path.read_bytes() for path in sorted((ROOT / "config").rglob("*.yaml"))]
+    assert all(_parser_of(text, "a.yaml") is yaml.CSafeLoader for text in texts)
+    fast = [parsed_yaml(text, "a.yaml") for text in texts]
+    monkeypatch.setattr(yaml_file, "_FAST", yaml.SafeLoader)
+    assert [parsed_yaml(text, "a.yaml") for text in texts] == fast
 
 
 def test_plain_values_are_as_before():
