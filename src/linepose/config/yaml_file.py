@@ -65,7 +65,8 @@ def _parser_of(text: bytes | str, place: str) -> Any:
         for event in yaml.parse(text, Loader=_FAST):
             depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
             if depth > _DEEPEST + 1:
-                raise _without_bounds(f"{place}, line {event.start_mark.line + 1}")
+                line = event.start_mark.line + 1 if event.start_mark else 1
+                raise _without_bounds(f"{place}, line {line}")
     except (yaml.YAMLError, ValueError, TypeError, AttributeError):
         return yaml.SafeLoader
     return _FAST
