@@ -4,6 +4,7 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 
+from linepose.config.map import MAP_RESULTS
 from linepose.config.project import load_project
 from linepose.errors import LineposeError
 from linepose.estimation.noise_models import noise_model
@@ -18,8 +19,6 @@ from linepose.pipeline import code_digest, sections
 from linepose.pipeline.adjusted_schemas import ADJUSTED, STAGES
 from linepose.pipeline.file_list import lost_files
 from linepose.tables import read_table
-
-FOLDERS = ("simulated", "mcmc", "figures")  # results that are folders of many files
 
 try:
     PROJECT = load_project(config, Path(), compared_platforms)
@@ -113,8 +112,7 @@ def map_results(platform):
     """What the maps of a platform's scans are, where its file asks for them."""
     if platform not in MAPPED_PLATFORMS:
         return []
-    names = ["map_budget", "map_scans", "strip_patches", "strip_fit"]
-    return [f"results/{platform}/{name}.parquet" for name in names]
+    return [f"results/{platform}/{name}.parquet" for name in MAP_RESULTS]
 
 
 def experiment_results(platform):

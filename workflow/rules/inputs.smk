@@ -15,9 +15,9 @@ for key in PROJECT.datasets:
             ],
         log:
             f"results/logs/fetch_{key}.log",
+        localrule: True  # nodes of a cluster often reach no network
         conda:
             "../../environment.yml"
-        localrule: True  # nodes of a cluster often reach no network
         resources:
             **LIGHT,
         params:

@@ -24,7 +24,7 @@ _RARELY: Final = 1e-3  # as often more than the bound lose their weight by tails
 def most_lost_by_tails(n_measurements: int) -> int:
     """How many of so many measurements lose their weight by heavy tails alone, but for one case in a thousand.
 
-    None, where tails let expect less than one: each is then worth a look.
+    None below 36, of which tails let expect less than one: there each is worth a look, though tails may be all of it.
     """
     if n_measurements * SHARE_OF_TAILS < 1:
         return 0

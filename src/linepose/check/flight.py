@@ -29,6 +29,7 @@ from linepose.simulation.planned_flight import planned_flight
 SUBJECT: Final = "planned strips"
 _FEWEST: Final = 10  # points that two strips or more see
 _MOST_POINTS: Final = 150  # of the plan: more hardly help, since the navigation limits
+_LATENESS_LINES: Final = 0.5  # of time stamps; a platform file of a plan rarely says it
 _WORTH: Final = 0.75  # of the worst sigma, to which a cure must bring it
 _TIED: Final = 0.8  # correlation from which on two numbers are told together
 _LEFT: Final = 0.9  # of the hand measurement's sigma: what the flight does not tell
@@ -73,7 +74,9 @@ class Plan:
         if len(flown.points_m) < _FEWEST:
             found = f"{len(flown.points_m)} of the points on the ground in two strips"
             raise InputError("flight.strips", found, f"{_FEWEST} or more", "fly strips closer, or across each other")
-        levels = Levels(1.0, max(errors.white_share, LEAST), LEAST, 1.0, 0.5, errors.correlation_time_s, 1.0)
+        levels = Levels(
+            1.0, max(errors.white_share, LEAST), LEAST, 1.0, _LATENESS_LINES, errors.correlation_time_s, 1.0
+        )
         return predicted_covariance(
             flown.survey,
             self.camera,
@@ -176,11 +179,13 @@ def _changes(plan: Plan) -> Iterator[tuple[str, Plan]]:
     heights = [one.height_m for one in plan.strips]
     if max(heights) < _SECOND_HEIGHT * min(heights):
         second = _SECOND_HEIGHT * min(heights)
-        every = tuple(replace(one, height_m=second) if k // 2 % 2 else one for k, one in enumerate(plan.strips))
-        yield f"fly a second height, every other pair of strips at {second:g} m", replace(plan, strips=every)
-    back = tuple(
-        replace(one, heading_rad=plan.strips[0].heading_rad + np.pi * (k % 2)) for k, one in enumerate(plan.strips)
-    )
+        if len(plan.strips) > 2:
+            every = tuple(replace(one, height_m=second) if k // 2 % 2 else one for k, one in enumerate(plan.strips))
+            yield f"fly a second height, every other pair of strips at {second:g} m", replace(plan, strips=every)
+        else:
+            again = tuple(replace(one, height_m=second) for one in plan.strips)
+            yield f"fly the strips again at {second:g} m", replace(plan, strips=(*plan.strips, *again))
+    back = tuple(replace(one, heading_rad=one.heading_rad + np.pi * (k % 2)) for k, one in enumerate(plan.strips))
     if all(np.cos(one.heading_rad - plan.strips[0].heading_rad) > 0 for one in plan.strips):
         yield "fly every other strip back", replace(plan, strips=back)
     north_m = float(np.mean([one.north_m for one in plan.strips]))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import typer
 
 if TYPE_CHECKING:
+    from linepose.config.platform import Platform
     from linepose.config.project import Project
     from linepose.pipeline.outdated import Outdated
 
@@ -23,7 +24,8 @@ def tell_outdated(project: "Project", root: Path, name: str) -> None:
         scripts = find_workflow(root).parent / "scripts"
     except InputError:
         scripts = None
-    if outdated := outdated_results(Present(project, root, name, scripts)):
+    present = Present(project, root, name, scripts, left_out=_unmapped(project.platforms[name]))
+    if outdated := outdated_results(present):
         typer.echo(f"linepose: {told(outdated)}; to make it again: linepose run {name}", err=True)
 
 
@@ -34,6 +36,12 @@ def all_outdated(project: "Project", root: Path, name: str, scripts: Path) -> "l
 
     platform = project.platforms[name]
     sections = {key: section.values(platform) for key, section in SECTIONS.items()}
-    left_out = {output for one in EXPERIMENTS if not one.is_wanted(platform) for output in one.outputs}
-    left_out |= set() if platform.map else {"map_budget", "map_scans", "strip_patches", "strip_fit"}
-    return outdated_results(Present(project, root, name, scripts, sections, frozenset(left_out)))
+    left_out = frozenset(output for one in EXPERIMENTS if not one.is_wanted(platform) for output in one.outputs)
+    return outdated_results(Present(project, root, name, scripts, sections, left_out | _unmapped(platform)))
+
+
+def _unmapped(platform: "Platform") -> frozenset[str]:
+    """The results of maps, where a platform's file does not ask for them, or no longer."""
+    from linepose.config.map import MAP_RESULTS
+
+    return frozenset() if platform.map else frozenset(MAP_RESULTS)

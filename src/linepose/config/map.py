@@ -1,10 +1,13 @@
 """How scans are put on the map: the ground they show."""
 
-from typing import Literal
+from typing import Final, Literal
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt, field_validator, model_validator
 
 from linepose.settings import Settings
+
+MAP_RESULTS: Final = ("map_budget", "map_scans", "strip_patches", "strip_fit")
+"""Names of the tables that the workflow makes of the maps of a platform's scans."""
 
 
 class GeotiffSection(Settings):

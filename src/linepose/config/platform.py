@@ -140,6 +140,12 @@ class Platform(Settings):
         return self
 
     @model_validator(mode="after")
+    def _has_scans_to_map(self) -> "Platform":
+        if self.map is not None and not isinstance(self.source, ScansSection):
+            raise ValueError("source.kind scans with map: labelled views have no scans to map")
+        return self
+
+    @model_validator(mode="after")
     def _has_ground_to_match(self) -> "Platform":
         source = self.source
         if not isinstance(source, ScansSection) or source.points != "matching":

@@ -29,13 +29,14 @@ _WEEK: Final = ("week", "gps_week", "gpsweek")
 _NORTH: Final = ("north", "northing", "n", "pos_north", "position_north", "x_north")
 _EAST: Final = ("east", "easting", "e", "pos_east", "position_east", "x_east")
 _DOWN: Final = ("down", "d", "pos_down", "position_down")
+_X: Final = ("x", "pos_x")
 _HEIGHT: Final = (
     "height", "alt", "altitude", "h", "hgt", "h_ell", "ellipsoid_height", "ellipsoidal_height", "elevation", "ele",
 )  # fmt: skip
 _POSITIONS: Final[Mapping[str, Sequence[tuple[Sequence[str], ...]]]] = {
     "geodetic": [(("latitude", "lat"), ("longitude", "lon", "long", "lng"), _HEIGHT)],
     "ned": [(_NORTH, _EAST, _DOWN)],
-    "enu": [(_EAST, _NORTH, ("up", "u", "z", *_HEIGHT)), (("x", "pos_x"), ("y", "pos_y"), ("z", "pos_z"))],
+    "enu": [(_EAST, _NORTH, ("up", "u", "z", *_HEIGHT)), (_X, ("y", "pos_y"), ("z", "pos_z"))],
 }
 _HEADING: Final = ("heading", "azimuth", "hdg", "true_heading")
 _ATTITUDES: Final[Sequence[tuple[Sequence[str], ...]]] = [
@@ -89,7 +90,7 @@ def keys_by_names(path: Path) -> dict[str, Any] | None:
     """The keys of a text log by the names of its columns and the size of its numbers; None where these do not tell all.
 
     A guess in what no name says: angles beyond a full turn of radians are degrees, times are in the unit in which they
-    lie in this century.
+    lie in this century, and quaternions, or angles beside x, y, z, have the axes of ROS.
     """
     try:
         pieces = _pieces(path)
@@ -184,7 +185,7 @@ def _columns(heading: _Heading) -> dict[str, Any] | None:
     keys: dict[str, Any] = clock | {"coordinates": axes} | ({"decimal": decimal} if decimal != "." else {})
     if len(attitude) == 3:
         keys["angle_unit"] = unit
-    if axes == "enu" and not set(_HEADING) & {_plain(attitude[-1])[0]}:
+    if axes == "enu" and (len(attitude) > 3 or _plain(position[0])[0] in _X):  # as robots have it, and not maps
         keys["attitude_axes"] = "enu"
     if axes == "geodetic":
         keys |= _latitude_unit(heading, position[0])

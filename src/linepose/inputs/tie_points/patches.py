@@ -21,7 +21,7 @@ _CONTRAST: Final = 1e-6  # of a patch's light beside its mean, below which it sh
 class Patches:
     """Patches (K,) that two strips show: raw line and pixel in each (K, 2), and how well they correlate (K,).
 
-    n_tried, of which n_uncorrelated were not found again, and n_contradicted lie where their neighbours do not say.
+    n_tried, of which n_uncorrelated were not found again, and n_contradicted are not borne out by the others.
     """
 
     first: Floats

@@ -22,7 +22,7 @@ _PANELS: Final = (("before", "Hand-measured pose", RED), ("after", "Calibrated p
 def strip_fit_map(patches: pd.DataFrame) -> Figure:
     """An arrow a patch, from where the first scan has it towards where the second has; `patches` as in `PATCHES`.
 
-    Each panel's arrows are as long as its longest allows; the key tells how much longer than true.
+    Each panel's arrows are as long as its longest allows; its title tells how long that is.
     """
     figure = blank_figure(WIDE_IN, 2.9)
     panels = figure.subplots(1, 2, sharex=True, sharey=True)

@@ -36,6 +36,9 @@ STATES: Final = {"n_missed": MISSED, "n_outside": OUTSIDE, "n_in_hole": IN_HOLE,
 """What is counted of pixels, and the kernel's number for it."""
 
 
+_Raw = tuple[Floats, NDArray[np.float32], NDArray[np.uint8]]
+
+
 @dataclass(frozen=True, eq=False)
 class Places:
     """Easting, northing, height (L, 3, P) in m, sigmas (L, 4, P) of them and the radius of 95 %, and states (L, P)."""
@@ -127,6 +130,15 @@ class ScanOnMap:
 
     def places(self, first: int, end: int, sources: Collection[Source] = SOURCES) -> Places:
         """The places of all pixels of lines first to end (exclusive), with the sigmas that these sources cause."""
+        place, sigma, state = self._in_survey(first, end, sources)
+        return Places(self._on_map(place), sigma, state)
+
+    def down_m(self, line: int) -> Floats:
+        """How far down, in the survey's own axes, the ground of a line's pixels lies (P,) in m; NaN where none is."""
+        return -self._in_survey(line, line + 1, ())[0][0, 2]
+
+    def _in_survey(self, first: int, end: int, sources: Collection[Source]) -> _Raw:
+        """East, north, up (n, 3, P) in the survey's own axes, sigmas (n, 4, P) on the map, and states (n, P)."""
         position, euler, reported = self.bodies(first, end)
         body, mounted, ground = matrix_from_euler(euler), self.mounted, self.ground
         centre = position + body @ mounted.pose[:3]
@@ -155,7 +167,7 @@ class ScanOnMap:
             sigma,
             state,
         )
-        return Places(self._on_map(place), sigma, state)
+        return place, sigma, state
 
     def places_of(self, line: ArrayLike, u_px: ArrayLike) -> Floats:
         """Easting, northing, height (K, 3) at fractional lines (K,) and pixels (K,); NaN where a ray has none."""

@@ -1,5 +1,6 @@
 """Whether maps fit: how far apart the same ground lies in two scans that overlap, before calibration and after."""
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -10,6 +11,7 @@ import pandas as pd
 import pyarrow as pa
 
 from linepose.arrays import Floats
+from linepose.errors import InputError
 from linepose.inputs.rectified.rectify import Rectified, line_poses, rectify
 from linepose.inputs.rectified.surface import Surface, flat_ground
 from linepose.inputs.scans.scan_files import read_intensity
@@ -18,6 +20,7 @@ from linepose.output.map.places import ScanOnMap
 from linepose.output.map.platform_map import PlatformMap
 from linepose.tables import floats, optional_floats, texts, whole_numbers
 
+_logger = logging.getLogger(__name__)
 PATCHES: Final = pa.schema(
     [
         *texts("first", "second"),
@@ -28,8 +31,8 @@ PATCHES: Final = pa.schema(
 )
 FIT: Final = pa.schema(
     [
-        *whole_numbers("n_scans", "n_pairs", "n_tried", "n_uncorrelated", "n_contradicted", "n_without_ground"),
-        *whole_numbers("n_compared"),
+        *whole_numbers("n_scans", "n_scans_left_out", "n_pairs", "n_tried", "n_uncorrelated", "n_contradicted"),
+        *whole_numbers("n_without_ground", "n_compared"),
         *optional_floats("pixel_m", "rms_before_m", "rms_after_m"),
     ]
 )
@@ -52,18 +55,23 @@ def strip_fit(before: PlatformMap, after: PlatformMap) -> dict[str, pd.DataFrame
 
     Patches of scans are found in others by correlation on a level surface, rectified at the calibrated pose (`after`);
     what is told is how far apart the two scans' maps then put such a patch, on the ground of the maps. `before` are the
-    maps at the hand-measured pose. `rms_*_m` are of the horizontal distance; `pixel_m` is what a pixel sees.
+    maps at the hand-measured pose. `rms_*_m` are of the horizontal distance; `pixel_m` is what a pixel sees. A scan
+    that cannot be rectified (too short, no ground, too large) is left out, counted and told.
     """
     scans = {number: after.scan_on_map(number) for number in after.paths}
     pixel_m = float(np.nanmedian([_pixel_m(one) for one in scans.values()]))
     if not pixel_m > 0:
-        return _tables([], [], len(scans), np.nan)
+        return _tables([], [], (len(scans), len(scans)), np.nan)
     surface = _level(list(scans.values()))
     strips = []
     for number, scan in scans.items():
         intensity = read_intensity(after.paths[number], scan.mounted.camera.n_pixels)
         poses = line_poses(*scan.bodies(0, scan.shape[0])[:2], scan.mounted.pose)
-        rectified = rectify(intensity, poses, scan.mounted.camera, surface, pixel_m)
+        try:
+            rectified = rectify(intensity, poses, scan.mounted.camera, surface, pixel_m)
+        except InputError as error:
+            _logger.warning("%s is not compared with other scans: found %s", scan.name, error.found)
+            continue
         strips.append(_Strip(rectified, before.scan_on_map(number), scan))
     found, compared = [], []
     for first, second in combinations(strips, 2):
@@ -71,7 +79,7 @@ def strip_fit(before: PlatformMap, after: PlatformMap) -> dict[str, pd.DataFrame
         if patches.n_tried:
             found.append(patches)
             compared.append(_compared(first, second, patches))
-    return _tables(found, compared, len(scans), pixel_m)
+    return _tables(found, compared, (len(scans), len(scans) - len(strips)), pixel_m)
 
 
 def _pixel_m(scan: ScanOnMap) -> float:
@@ -84,8 +92,7 @@ def _pixel_m(scan: ScanOnMap) -> float:
 
 def _level(scans: Sequence[ScanOnMap]) -> Surface:
     """Level ground at the height of what the scans' middle lines see."""
-    heights = [scan.places(scan.shape[0] // 2, scan.shape[0] // 2 + 1, ()).place_m[0, 2] for scan in scans]
-    return flat_ground(-float(np.nanmedian(np.concatenate(heights))))
+    return flat_ground(float(np.nanmedian(np.concatenate([scan.down_m(scan.shape[0] // 2) for scan in scans]))))
 
 
 def _compared(first: _Strip, second: _Strip, patches: Patches) -> pd.DataFrame:
@@ -102,12 +109,13 @@ def _compared(first: _Strip, second: _Strip, patches: Patches) -> pd.DataFrame:
 
 
 def _tables(
-    found: Sequence[Patches], compared: Sequence[pd.DataFrame], n_scans: int, pixel_m: float
+    found: Sequence[Patches], compared: Sequence[pd.DataFrame], n_scans: tuple[int, int], pixel_m: float
 ) -> dict[str, pd.DataFrame]:
     patches = pd.concat(compared, ignore_index=True) if compared else PATCHES.empty_table().to_pandas()
     both = patches.dropna(subset=[*_BEFORE, *_AFTER])
     row = {
-        "n_scans": n_scans,
+        "n_scans": n_scans[0],
+        "n_scans_left_out": n_scans[1],
         "n_pairs": len(found),
         "n_tried": sum(one.n_tried for one in found),
         "n_uncorrelated": sum(one.n_uncorrelated for one in found),

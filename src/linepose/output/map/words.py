@@ -15,8 +15,8 @@ _MEANINGS = {
     "n_met_twice": "meet the ground more than once",
 }
 _LEFT_OUT = {
-    "n_uncorrelated": "more were not found again",
-    "n_contradicted": "lie where their neighbours do not say",
+    "n_uncorrelated": "were not found again",
+    "n_contradicted": "are not borne out by others of their pair",
     "n_without_ground": "see no ground",
 }
 _WITHOUT_PLACE = ("n_missed", "n_outside", "n_in_hole")
@@ -50,15 +50,17 @@ def budget_sentences(made: ScanMap) -> list[str]:
 def fit_sentence(fit: "pd.Series[Any]") -> str:
     """Whether overlapping scans fit, from the row of `FIT`: how far apart they lie, and what was compared."""
     count = {key: int(fit[key]) for key in fit.index if key.startswith("n_")}
-    if not count["n_compared"]:
-        tried = f": of {count['n_tried']} patches none was found again" if count["n_tried"] else ""
-        return f"No ground was compared that two of {count['n_scans']} scans show{tried}."
-    after, before, pixel = (float(fit[key]) for key in ("rms_after_m", "rms_before_m", "pixel_m"))
     left_out = ", ".join(f"{count[key]} {words}" for key, words in _LEFT_OUT.items() if count[key])
+    scans = f" Scans that could not be put on level ground: {count['n_scans_left_out']} of {count['n_scans']}."
+    scans = scans if count["n_scans_left_out"] else ""
+    if not count["n_compared"]:
+        tried = f": of {count['n_tried']} patches {left_out}" if count["n_tried"] else ""
+        return f"No ground was compared that two of {count['n_scans']} scans show{tried}.{scans}"
+    after, before, pixel = (float(fit[key]) for key in ("rms_after_m", "rms_before_m", "pixel_m"))
     return (
         f"Overlapping scans lie {after * _MM:.0f} mm apart on the map, {after / pixel:.1f} pixels (RMS), and "
         f"{before * _MM:.0f} mm, {before / pixel:.1f} pixels, at the hand-measured pose: {count['n_compared']} patches "
-        f"of {count['n_pairs']} pairs of scans" + (f" ({left_out})." if left_out else ".")
+        f"of {count['n_pairs']} pairs of scans" + (f" ({left_out})." if left_out else ".") + scans
     )
 
 

@@ -24,7 +24,7 @@ LOGS = {  # heading, row with its time left open, two times, keys
         "Time [ms];Easting (m);Northing (m);Up (m);Roll (deg);Pitch (deg);Yaw (deg)\n",
         "{};2;1;-3;1;2;3\n",
         ("1700000000000", "1700000001000"),
-        {"delimiter": ";", "coordinates": "enu", "time_unit": "ms", "angle_unit": "degrees", "attitude_axes": "enu"},
+        {"delimiter": ";", "coordinates": "enu", "time_unit": "ms", "angle_unit": "degrees", "attitude_axes": None},
     ),
     "quaternion, commented heading": (
         "# a drive\n# timestamp x y z qx qy qz qw\n",
@@ -75,7 +75,7 @@ def test_values_are_those_of_the_log(tmp_path):
     _, poses = read(tmp_path, "units in brackets")
     np.testing.assert_allclose(poses.position_m[0], [1, 2, 3])
     assert poses.time_us.tolist() == [1_700_000_000_000_000, 1_700_000_001_000_000]
-    np.testing.assert_allclose(poses.euler_rad[0], [1 * DEG, -2 * DEG, 87 * DEG], atol=1e-12)  # clockwise from north
+    np.testing.assert_allclose(poses.euler_rad[0], [1 * DEG, 2 * DEG, 3 * DEG], atol=1e-12)
 
 
 def test_standard_deviations_are_taken_where_all_are_there(tmp_path):

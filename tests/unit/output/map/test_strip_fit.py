@@ -8,10 +8,12 @@ import pytest
 
 from linepose.config.map import MapSection
 from linepose.config.platform import Platform
+from linepose.errors import InputError
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera
 from linepose.inputs.navigation import log_covariances, read_navigation
 from linepose.inputs.observed_points import select_scans
+from linepose.output.exports.map_frame import MapFrame
 from linepose.output.map.frame import SurveyMap
 from linepose.output.map.ground import flat_ground
 from linepose.output.map.places import Navigation, ScanOnMap
@@ -91,6 +93,22 @@ class _Maps(PlatformMap):
 @pytest.fixture(scope="module")
 def fitted(maps):
     return strip_fit(maps(rolled(OFF_RAD)), maps(rolled(0.0)))
+
+
+def test_the_level_ground_counts_from_where_the_survey_counts_whatever_height_the_map_gives(maps):
+    """A survey in a plane that touches the Earth half a kilometre above the ellipsoid."""
+    in_plane = SurveyMap(MapFrame("EPSG:32632", (50.0, 9.0, 500.0)))
+    scan = replace(maps(rolled(0.0)).scan_on_map(1), frame=in_plane)
+    np.testing.assert_allclose(scan.down_m(scan.shape[0] // 2), 42.0, atol=1e-9)
+
+
+def test_a_scan_that_cannot_be_rectified_is_counted(maps, monkeypatch):
+    def refused(*_):
+        raise InputError("rectified scan", "a map of 9 x 9 cells", "at most 8 cells", "take larger cells")
+
+    monkeypatch.setattr("linepose.output.map.strip_fit.rectify", refused)
+    fit = strip_fit(maps(rolled(OFF_RAD)), maps(rolled(0.0)))["strip_fit"].iloc[0]
+    assert (fit["n_scans"], fit["n_scans_left_out"], fit["n_compared"]) == (2, 2, 0)
 
 
 def test_at_the_truth_strips_lie_within_a_pixel(fitted):

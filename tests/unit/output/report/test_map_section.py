@@ -56,6 +56,7 @@ def test_no_section_where_there_are_no_maps(tmp_path, changes):
 
 
 FIT_ROW = {"n_scans": 3, "n_pairs": 2, "n_tried": 40, "n_uncorrelated": 5, "n_contradicted": 4, "n_without_ground": 1}
+FIT_ROW |= {"n_scans_left_out": 0}
 FIT_ROW |= {"n_compared": 30, "pixel_m": 0.04, "rms_before_m": 0.8, "rms_after_m": 0.06}
 
 
@@ -71,11 +72,14 @@ def test_misfit_is_told_in_millimetres_and_pixels_with_what_was_left_out(tmp_pat
     fit_written(tmp_path)
     assert section_of(tmp_path, BUDGET, map={}).paragraphs[-1] == (
         "Overlapping scans lie 60 mm apart on the map, 1.5 pixels (RMS), and 800 mm, 20.0 pixels, at the hand-measured "
-        "pose: 30 patches of 2 pairs of scans (5 more were not found again, 4 lie where their neighbours do not say, 1 "
+        "pose: 30 patches of 2 pairs of scans (5 were not found again, 4 are not borne out by others of their pair, 1 "
         "see no ground)."
     )
-    fit_written(tmp_path, n_compared=0)
-    assert "of 40 patches none was found again" in section_of(tmp_path, BUDGET, map={}).text
+    fit_written(tmp_path, n_compared=0, n_uncorrelated=36, n_without_ground=0, n_scans_left_out=1)
+    assert section_of(tmp_path, BUDGET, map={}).paragraphs[-1] == (
+        "No ground was compared that two of 3 scans show: of 40 patches 36 were not found again, 4 are not borne out "
+        "by others of their pair. Scans that could not be put on level ground: 1 of 3."
+    )
 
 
 @pytest.mark.parametrize("n_compared", [30, 0])
