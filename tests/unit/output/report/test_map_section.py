@@ -14,6 +14,7 @@ from linepose.pipeline.calibration import Calibration
 from linepose.tables import write_table
 from unit import made_up
 
+MAPPED = {"map": {}, "source": {"kind": "scans", "dataset": "made-up"}}
 BUDGET = pd.DataFrame(
     [
         ["strip", place, source, factor * 0.001 * k, 0.002, 0.01 * factor]
@@ -32,7 +33,7 @@ def section_of(folder, budget, **changes):
 
 
 def test_budget_is_told_in_millimetres_a_column_a_source(tmp_path):
-    section = section_of(tmp_path, BUDGET, map={})
+    section = section_of(tmp_path, BUDGET, **MAPPED)
     budget, pixels = section.tables
     assert [head.lower() for head in budget.heads[1:-2]] == [*SOURCES, AS_REPORTED, ALL]
     assert budget.rows[0] == ["strip, centre", "1.0", "2.0", "3.0", "4.0", "5.0", "6.0", "7.0", "2.0", "10.0"]
@@ -43,12 +44,12 @@ def test_budget_is_told_in_millimetres_a_column_a_source(tmp_path):
 
 def test_a_scan_without_ground_has_empty_cells(tmp_path):
     nothing = BUDGET.assign(horizontal_m=None, height_m=None, radius_95_m=None)
-    section = section_of(tmp_path, nothing.astype({"horizontal_m": float, "height_m": float}), map={})
+    section = section_of(tmp_path, nothing.astype({"horizontal_m": float, "height_m": float}), **MAPPED)
     assert set(section.tables[0].rows[0][1:]) == {""}
     assert "2 of 2 places of the budget see no ground" in section.text
 
 
-@pytest.mark.parametrize("changes", [{}, {"map": {}}])
+@pytest.mark.parametrize("changes", [{}, MAPPED])
 def test_no_section_where_there_are_no_maps(tmp_path, changes):
     assert map_section(Calibration.from_results(tmp_path, made_up.platform(**changes))) is None
     if not changes:
@@ -70,13 +71,13 @@ def fit_written(folder, **changes):
 
 def test_misfit_is_told_in_millimetres_and_pixels_with_what_was_left_out(tmp_path):
     fit_written(tmp_path)
-    assert section_of(tmp_path, BUDGET, map={}).paragraphs[-1] == (
+    assert section_of(tmp_path, BUDGET, **MAPPED).paragraphs[-1] == (
         "Overlapping scans lie 60 mm apart on the map, 1.5 pixels (RMS), and 800 mm, 20.0 pixels, at the hand-measured "
         "pose: 30 patches of 2 pairs of scans (5 were not found again, 4 are not borne out by others of their pair, 1 "
         "see no ground)."
     )
     fit_written(tmp_path, n_compared=0, n_uncorrelated=36, n_without_ground=0, n_scans_left_out=1)
-    assert section_of(tmp_path, BUDGET, map={}).paragraphs[-1] == (
+    assert section_of(tmp_path, BUDGET, **MAPPED).paragraphs[-1] == (
         "No ground was compared that two of 3 scans show: of 40 patches 36 were not found again, 4 are not borne out "
         "by others of their pair. Scans that could not be put on level ground: 1 of 3."
     )
@@ -85,7 +86,7 @@ def test_misfit_is_told_in_millimetres_and_pixels_with_what_was_left_out(tmp_pat
 @pytest.mark.parametrize("n_compared", [30, 0])
 def test_misfit_is_drawn_on_the_map_even_where_there_is_none(tmp_path, n_compared):
     fit_written(tmp_path, n_compared=n_compared)
-    calibration = Calibration.from_results(tmp_path, made_up.platform(map={}))
+    calibration = Calibration.from_results(tmp_path, made_up.platform(**MAPPED))
     index = render_figures(calibration, tmp_path / "figures", strip_fit.FIGURES)
     assert index["left_out"].tolist() == [""]
     assert (tmp_path / "figures" / "strip_fit.png").stat().st_size > 5000
