@@ -128,7 +128,17 @@ def _tiff(path: Path) -> Iterator[Any]:
     import tifffile  # late: only these files need it
 
     with tifffile.TiffFile(path) as file:
+        _check_pages(file, path)
         yield file
+
+
+def _check_pages(file: Any, path: Path) -> None:
+    """Raise InputError where pages lead back to one before them: tifffile would follow them for ever."""
+    seen: set[int] = set()
+    for page in file.pages:
+        if page.offset in seen:
+            raise InputError(str(path), "pages that lead back to each other", "a whole TIFF file", "restore the scan")
+        seen.add(page.offset)
 
 
 def _tiff_size(file: Any, path: Path) -> tuple[int, int]:

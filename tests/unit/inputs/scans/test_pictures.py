@@ -142,3 +142,18 @@ def test_8_bits_are_told_and_16_are_not(tmp_path, cube, caplog):
     for name in ("flat.png", "flat.tif"):
         picture_size(tmp_path / name)
         assert f"{name}: 8 bits a value: dots are as exact where the scene fills the range" in caplog.text
+
+
+def test_a_tiff_whose_pages_lead_back_to_each_other_ends(tmp_path):
+    path = tmp_path / "scan.tif"
+    tifffile.imwrite(path, np.zeros((4, 8), dtype=np.uint16))
+    content = bytearray(path.read_bytes())
+    content += b"\0" * (len(content) % 2)
+    (first,) = struct.unpack_from("<I", content, 4)
+    (n_tags,) = struct.unpack_from("<H", content, first)
+    struct.pack_into("<I", content, first + 2 + 12 * n_tags, len(content))
+    content += struct.pack("<HI", 0, len(content))  # a page without tags, which comes next to itself
+    path.write_bytes(content)
+    for read in (picture_size, read_picture):
+        with pytest.raises(InputError, match=r"scan\.tif: found pages that lead back to each other"):
+            read(path)
