@@ -18,13 +18,12 @@ import numpy as np
 from linepose.adjustment.estimate import unit_weights
 from linepose.adjustment.iterative import Equations, Preconditioner, blocks, conjugate_gradients, equations, smooth
 from linepose.adjustment.levels import Levels, levels_from_log
-from linepose.adjustment.linearise import empty_linearised, linearise
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_CAMERA, N_POSE
 from linepose.adjustment.posterior import Mixture
 from linepose.adjustment.process import Weights, components, corrections, error_image
 from linepose.adjustment.start import behind_at_start
-from linepose.adjustment.state import Knowledge, State, camera_step
+from linepose.adjustment.state import Knowledge, State, camera_step, linearised_at
 from linepose.adjustment.thresholds import DEGREES_OF_FREEDOM, MEASUREMENT_DIMENSION
 from linepose.adjustment.whitening import factorise, unwhiten, whiten_residual
 from linepose.arrays import Floats
@@ -100,17 +99,8 @@ def solve_many(
     structure = measurements.structure
     state, steps, displacements = start, 0, None
     while True:
-        linearised = empty_linearised(len(measurements.u_px))
-        if linearise(
-            measurements.u_px,
-            state.body_poses(measurements),
-            knowledge.rates(measurements),
-            measurements.point,
-            state.points_m,
-            measurements.known.shifts,
-            state.optics(knowledge.camera),
-            linearised,
-        ):
+        linearised = linearised_at(measurements, knowledge, state)
+        if linearised is None:
             raise behind_at_start(measurements, state.pose, state.points_m)
         process = components(structure, error_image(structure, linearised), levels, weights)
         factor = factorise(process, structure.view_of, structure.begins)
@@ -159,17 +149,8 @@ def covariance_of_many(measurements: Measurements, knowledge: Knowledge, state: 
 
     Raises EstimationError where a point lies behind the camera, or the normal equations cannot be solved.
     """
-    linearised = empty_linearised(len(measurements.u_px))
-    if linearise(
-        measurements.u_px,
-        state.body_poses(measurements),
-        knowledge.rates(measurements),
-        measurements.point,
-        state.points_m,
-        measurements.known.shifts,
-        state.optics(knowledge.camera),
-        linearised,
-    ):
+    linearised = linearised_at(measurements, knowledge, state)
+    if linearised is None:
         raise behind_at_start(measurements, state.pose, state.points_m)
     structure = measurements.structure
     process = components(structure, error_image(structure, linearised), levels, unit_weights(measurements))

@@ -14,12 +14,12 @@ from typing import Final
 import numpy as np
 
 from linepose.adjustment.levels import Levels
-from linepose.adjustment.linearise import Linearised, empty_linearised, linearise
+from linepose.adjustment.linearise import Linearised
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import N_CAMERA, N_POSE, Pass, Prior, design, one_pass, solve_step, whitened_residual
 from linepose.adjustment.process import Components, ErrorImage, Weights, components, corrections, error_image
 from linepose.adjustment.start import behind_at_start
-from linepose.adjustment.state import Knowledge, State
+from linepose.adjustment.state import Knowledge, State, linearised_at
 from linepose.adjustment.whitening import unwhiten
 from linepose.arrays import Floats
 from linepose.errors import EstimationError
@@ -71,18 +71,8 @@ class Solution:
 
 def model_at(measurements: Measurements, knowledge: Knowledge, state: State) -> Model | None:
     """The linear model at a state; None where a point is not in front of the camera."""
-    linearised = empty_linearised(len(measurements.u_px))
-    behind = linearise(
-        measurements.u_px,
-        state.body_poses(measurements),
-        knowledge.rates(measurements),
-        measurements.point,
-        state.points_m,
-        measurements.known.shifts,
-        state.optics(knowledge.camera),
-        linearised,
-    )
-    if behind:
+    linearised = linearised_at(measurements, knowledge, state)
+    if linearised is None:
         return None
     rows = design(linearised, state.correction, measurements.point, measurements.n_points)
     image = error_image(measurements.structure, linearised)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linepose.adjustment.hand_measured import HandMeasuredPrior
-from linepose.adjustment.linearise import Optics
+from linepose.adjustment.linearise import Linearised, Optics, empty_linearised, linearise
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import CLOCK_OFFSET, COMMON_SHIFT, N_CAMERA, N_INTRINSICS, N_POSE, N_SHARED, Prior
 from linepose.arrays import Floats
@@ -152,3 +152,19 @@ class Knowledge:
         return Prior(
             information, vector, points_information, points_vector, chi_squared + float(np.sum(off * points_vector))
         )
+
+
+def linearised_at(measurements: Measurements, knowledge: Knowledge, state: State) -> Linearised | None:
+    """The rays' derivatives at a state; None where a point is not in front of the camera."""
+    linearised = empty_linearised(len(measurements.u_px))
+    behind = linearise(
+        measurements.u_px,
+        state.body_poses(measurements),
+        knowledge.rates(measurements),
+        measurements.point,
+        state.points_m,
+        measurements.known.shifts,
+        state.optics(knowledge.camera),
+        linearised,
+    )
+    return None if behind else linearised
