@@ -25,7 +25,7 @@ def strip_fit_map(patches: pd.DataFrame) -> Figure:
     Each panel's arrows are as long as its longest allows; its title tells how long that is.
     """
     figure = blank_figure(WIDE_IN, 2.9)
-    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    panels = figure.subplots(1, 2)
     patches = patches[patches[_COLUMNS].notna().all(axis=1)]
     place = patches[["easting_m", "northing_m"]].to_numpy(dtype=float)
     origin = place.min(axis=0) if len(place) else np.zeros(2)
@@ -47,7 +47,10 @@ def _draw(panel: Axes, place: np.ndarray, off: np.ndarray, extent: float, colour
     longest = float(np.linalg.norm(off, axis=1).max())
     scale = max(longest, 1e-9) / (_LONGEST * extent)  # metres of misfit per metre of the map
     panel.quiver(*place.T, *off.T, angles="xy", scale_units="xy", scale=scale, color=colour, width=0.006)
-    panel.text(0.02, 0.98, f"longest {longest * 1e3:.0f} mm", va="top", transform=panel.transAxes, fontsize=7)
+    ends = np.concatenate([place, place + off / scale])
+    low, high, rim = ends.min(axis=0), ends.max(axis=0), 0.03 * extent
+    panel.set(xlim=(low[0] - rim, high[0] + rim), ylim=(low[1] - rim, high[1] + rim))
+    panel.set_title(f"{panel.get_title()}, longest {longest * 1e3:.0f} mm")
 
 
 def _patches(calibration: Calibration) -> pd.DataFrame:
