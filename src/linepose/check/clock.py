@@ -127,8 +127,9 @@ def nearest_gap_s(time_us: Times, navigation_us: Times) -> NDArray[np.float64]:
 
 def rate_findings(log_us: Times, maximum_gap_s: float) -> list[Finding]:
     """How often the navigation log has a pose (K,)."""
-    step_s = float(np.median(np.diff(log_us))) / 1e6
-    found = f"a pose every {step_s:.3g} s in the navigation log"
+    steps_s = np.diff(log_us) / 1e6
+    step_s = float(np.median(steps_s))
+    found = f"a pose every {step_s:.3g} s in the navigation log, at most {steps_s.max():.3g} s apart"
     if step_s > maximum_gap_s:
         return [
             error(

@@ -109,11 +109,17 @@ def pose_findings(points: pd.DataFrame) -> list[Finding]:
     return findings
 
 
-def position_findings(position_m: np.ndarray) -> list[Finding]:
-    """Whether positions (P, 3) north, east, down can be metres: latitude and longitude hardly change at all."""
+def position_findings(position_m: np.ndarray, may_be_geodetic: bool = True) -> list[Finding]:
+    """Whether positions (P, 3) north, east, down can be metres: latitude and longitude hardly change at all.
+
+    They cannot be those where they were made of latitude and longitude.
+    """
+    if len(position_m) > 1 and np.all(np.ptp(position_m, axis=0) == 0):
+        advice = "check which columns hold north, east, down" if may_be_geodetic else "bring the log of the drive"
+        return [error("body pose", "all positions are the same", advice)]
     extent = np.ptp(position_m[:, :2], axis=0)
     in_degrees = np.all(np.abs(position_m[:, :2]) <= [90.0, 180.0]) and np.all(extent < 1e-3)
-    if in_degrees and len(position_m) > 1:
+    if may_be_geodetic and in_degrees and len(position_m) > 1:
         north, east = position_m[0, :2]
         return [
             error(
@@ -123,6 +129,4 @@ def position_findings(position_m: np.ndarray) -> list[Finding]:
                 "convert them to north and east in metres (a local frame, or UTM)",
             )
         ]
-    if np.all(np.ptp(position_m, axis=0) == 0):
-        return [error("body pose", "all positions are the same", "check which columns hold north, east, down")]
     return []

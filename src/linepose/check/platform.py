@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from linepose.adjustment.known_points import KnownPoints
-from linepose.check import clock, covariances
+from linepose.check import clock, contents, covariances
 from linepose.check.camera import camera_findings
 from linepose.check.conventions.examine import HandSigmas
 from linepose.check.conventions.findings import agreed, convention_findings
@@ -37,7 +37,7 @@ from linepose.experiments.registry import compared_platforms, experiment_faults
 from linepose.inputs.navigation.covariance_file import read_covariances
 from linepose.inputs.number_files import read_numbers
 from linepose.inputs.source import LabelledViewsSection, ScansSection
-from linepose.pipeline.load import read_log, read_reported, with_navigation
+from linepose.pipeline.load import read_record, read_reported, with_navigation
 from linepose.pipeline.project_folder import CONFIG, find_project, load_platform_project
 from linepose.simulation.survey import simulate_survey
 from linepose.survey.datasets import check_dataset
@@ -209,7 +209,8 @@ def _navigation_findings(
 ) -> tuple[list[Finding], Recorded]:
     """Findings on navigation log, covariances, and their times against those of the points."""
     findings: list[Finding] = []
-    log = _attempt(read_log, settings, folder, "navigation log", findings) if _has_log(settings) else None
+    record = _attempt(read_record, settings, folder, "navigation log", findings) if _has_log(settings) else None
+    log = None if record is None else record.log
     reported = None
     if log is not None or not _has_log(settings):
         reported = _attempt(read_reported, settings, folder, "covariances", findings)
@@ -220,8 +221,10 @@ def _navigation_findings(
         if settings.source.covariances is not None:
             findings += _column_findings(settings, folder / settings.source.covariances)
     navigation = settings.navigation
-    if log is not None:
-        findings += position_findings(log.position_m)
+    if record is not None:
+        log = record.log
+        findings.append(contents.of_log(record))
+        findings += position_findings(log.position_m, record.frame is None)
         findings += clock.rate_findings(log.time_us, navigation.maximum_pose_gap_s)
     if points is not None:
         time_us = points["time_us"].to_numpy()

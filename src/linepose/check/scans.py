@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from linepose.check import contents
 from linepose.check.clock import header_findings
 from linepose.check.dots import dot_findings
 from linepose.check.finding import Finding, Level, error, numbers, of_fault, of_faults, ok, warning
@@ -48,6 +49,10 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
     )
     if not any(finding.level == Level.ERROR for finding in findings):
         findings.append(ok("scans", f"{len(scans)} scans of {n_pixels} pixels, a time stamp for each line"))
+        try:
+            findings.append(contents.of_scans(scans, times))
+        except InputError as fault:
+            findings.append(of_fault("scans", fault))
     if source.points != "labels":
         found = (
             "points are found without labels: their numbers, conventions and predicted sigmas are known after "
@@ -58,6 +63,8 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
         labels = read_point_labels(folder, source.labels, scans, n_pixels, source.point_id)
     except InputError as fault:
         return [*findings, of_fault("labels", fault)], None
+    if not labels.empty:
+        findings.append(contents.of_labels(labels))
     label_findings, points = _timed(labels[labels["observation"].isin(times)], times, n_pixels)
     unlabelled = sorted(set(scans) - set(labels["observation"]))
     if unlabelled:

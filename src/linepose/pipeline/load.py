@@ -72,10 +72,15 @@ def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> p
     return observations
 
 
+def read_record(platform: Platform, folder: Path) -> NavigationRecord:
+    """What the raw log of a platform with scans holds, corrected; raises InputError."""
+    assert isinstance(platform.source, ScansSection)
+    return read_navigation(platform.source, folder, platform.navigation.corrections)
+
+
 def read_log(platform: Platform, folder: Path) -> NavigationLog:
     """The raw navigation log of a platform with scans; raises InputError."""
-    assert isinstance(platform.source, ScansSection)
-    return read_navigation(platform.source, folder, platform.navigation.corrections).log
+    return read_record(platform, folder).log
 
 
 def map_frame_table(platform: Platform, folder: Path) -> pd.DataFrame:
