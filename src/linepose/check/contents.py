@@ -9,6 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from linepose.check.finding import Finding, ok
+from linepose.errors import InputError
 from linepose.inputs.local_frame import geodetic_from_local
 from linepose.inputs.navigation import NavigationRecord
 from linepose.inputs.scans.scan_bands import open_bands
@@ -39,6 +40,8 @@ def of_scans(scans: Mapping[int, Path], times: Mapping[int, NDArray[np.int64]]) 
     lines = np.unique(np.linspace(0, n_lines - 1, _LINES).round().astype(np.int64))
     at_line, at_pixel = (one.ravel() for one in np.meshgrid(lines, np.arange(n_pixels), indexing="ij"))
     mean = bands.nearest(at_line, at_pixel, range(n_bands)).mean(axis=0, dtype=float)
+    if not np.all(np.isfinite(mean)):
+        raise InputError(str(path), "intensities that are no numbers", "finite intensities", "restore the scan")
     told = f"scan {number}, {path.name}: {n_lines} lines from {utc(times[number][0])} to {utc(times[number][-1])}; "
     return ok("scans", told + f"intensities {mean.min():.6g} to {mean.max():.6g}, on average {mean.mean():.6g}")
 

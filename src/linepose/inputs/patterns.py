@@ -50,3 +50,11 @@ def matching(folder: Path, pattern: str) -> list[Path]:
             expected = "a name without braces, in which the workflow would look for its own words"
             raise InputError(str(path), "braces in a file's name", expected, "rename the file")
     return found
+
+
+def in_any_case(path: Path) -> Path:
+    """The file itself, or where there is none the only one beside it whose name differs in upper and lower case."""
+    if path.exists() or not path.parent.is_dir():
+        return path
+    alike = [one for one in path.parent.iterdir() if one.name.lower() == path.name.lower()]
+    return alike[0] if len(alike) == 1 else path

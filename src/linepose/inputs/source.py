@@ -10,7 +10,7 @@ from typing import Any, Literal
 from pydantic import Field, PositiveFloat, PositiveInt, field_validator, model_validator
 
 from linepose.inputs.navigation.registry import Navigation
-from linepose.inputs.patterns import Dataset, Files, matching
+from linepose.inputs.patterns import Dataset, Files, in_any_case, matching
 from linepose.inputs.scans.envi_header import data_files
 from linepose.inputs.tie_points.settings import MatchingSection
 from linepose.settings import Settings
@@ -129,7 +129,15 @@ class ScansSection(Settings):
 
     def time_path(self, scan: Path, usual: str) -> Path:
         """The file of a scan's time stamps: of the name that `time_file` gives, else of the usual one."""
-        return scan.parent / (self.time_file or usual).replace("{name}", scan.stem)
+        return in_any_case(scan.parent / (self.time_file or usual).replace("{name}", scan.stem))
+
+    @field_validator("start_times", mode="before")
+    @classmethod
+    def _have_a_time_of_the_day(cls, starts: Any) -> Any:
+        days = [name for name, start in starts.items() if _is_day(start)] if isinstance(starts, Mapping) else []
+        if days:
+            raise ValueError(f"a date and time, not the day alone, for {days[0]} (2026-05-01T12:00:00.25Z)")
+        return starts
 
     @model_validator(mode="before")
     @classmethod
@@ -142,10 +150,10 @@ class ScansSection(Settings):
         scans = matching(folder, self.scans)
         beside = {path for scan in scans for path in scan.parent.glob(f"{glob.escape(scan.stem)}[.-]*")}
         beside |= {scan.with_suffix("") for scan in scans}  # run.bil of run.bil.hdr
-        if self.time_stamps == "resonon":
-            beside |= {path for scan in scans for suffix in ("*.times", "*.lcf") for path in scan.parent.glob(suffix)}
-        elif self.time_stamps == "headwall":
-            beside |= {path for scan in scans for path in scan.parent.glob("frameIndex_*.txt")}
+        named = {"resonon": r".*\.(times|lcf)", "headwall": r"frameindex_.*\.txt"}.get(self.time_stamps)
+        if named:
+            folders = {scan.parent for scan in scans}
+            beside |= {one for folder in folders for one in folder.iterdir() if re.fullmatch(named, one.name.lower())}
         beside |= {self.time_path(scan, "{name}-times.csv") for scan in scans}
         beside |= {scan.parent / name for scan in scans for name in data_files(scan)}
         labels = set(matching(folder, self.labels)) or {folder / self.labels} if self.points == "labels" else set()
@@ -153,3 +161,10 @@ class ScansSection(Settings):
         log = {folder / navigation} if isinstance(navigation, str) else navigation.files(folder)
         covariances = {folder / self.covariances} if self.covariances else set()
         return {*(path for path in beside if path.is_file()), *scans, *labels, *log, *covariances}
+
+
+def _is_day(start: object) -> bool:
+    """Whether a value of the YAML is a date without a time, which would be read as midnight."""
+    if isinstance(start, str):
+        return re.fullmatch(r"\s*\d{4}-\d\d?-\d\d?\s*", start) is not None
+    return isinstance(start, datetime.date) and not isinstance(start, datetime.datetime)

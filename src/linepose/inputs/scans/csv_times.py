@@ -1,5 +1,6 @@
 """Time stamps in a file of one a row: whole microseconds, seconds with decimals, or dates and times (ISO 8601, UTC)."""
 
+import codecs
 import re
 from pathlib import Path
 from typing import Final
@@ -12,43 +13,63 @@ from linepose.errors import InputError
 from linepose.inputs import gps_time
 
 _BRIEFLY: Final = 60
+_WHOLE: Final = "a whole number of microseconds"
+_SECONDS: Final = "seconds with decimals"
+_POWERS: Final = "numbers such as 1.7e+09 (s) or 1.7e+15 (us)"
+_TEXT: Final = "a date and time such as 2026-05-01T12:00:00.25Z"
 _KINDS: Final = {
-    "a whole number of microseconds": re.compile(r"[+-]?\d{1,18}"),
-    "seconds with decimals": re.compile(r"[+-]?\d{1,12}\.\d*"),
-    "a date and time such as 2026-05-01T12:00:00.25Z": re.compile(
-        r"\d{4}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d:\d\d(\.\d*)?\S*"
-    ),
+    _WHOLE: re.compile(r"[+-]?\d{1,19}"),
+    _SECONDS: re.compile(r"[+-]?\d{1,12}([.,]\d*)?"),
+    _POWERS: re.compile(r"[+-]?\d(\.\d*)?[eE][+]?\d{1,2}"),
+    _TEXT: re.compile(r"\d{4}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d:\d\d([.,]\d*)?\S*"),
 }
+_MARKS: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+_SMALLEST_US: Final = 1e14  # of numbers in powers of ten, which are seconds below
 
 
 def read_times(path: Path) -> tuple[NDArray[np.int64], int]:
     """Time stamps (us), one a row, and how many rows (0 or 1) the heading takes.
 
-    All rows are of the kind of the first. Raises InputError naming the row that is not.
+    All rows are of one kind, the first that fits them. Raises InputError naming the row that is not.
     """
     if not path.is_file():
         raise InputError(str(path), "no such file", "the time stamp of each line", "put it beside the scan")
-    try:
-        rows = [row.strip().strip('"') for row in path.read_text(encoding="utf-8-sig").splitlines() if row.strip()]
-    except UnicodeDecodeError:
-        raise InputError(str(path), "bytes that are not text", "a time stamp a row", "restore the file") from None
+    rows = [row.strip().strip('"') for row in _text(path).splitlines() if row.strip()]
     heading = int(bool(rows) and bool(re.match(r"[A-Za-z_]", rows[0])))
     cells = rows[heading:]
     if not cells:
         return np.empty(0, dtype=np.int64), heading
-    kind = next((name for name, pattern in _KINDS.items() if pattern.fullmatch(cells[0])), next(iter(_KINDS)))
-    for row, cell in enumerate(cells, start=heading + 1):
-        if not _KINDS[kind].fullmatch(cell):
-            raise _fault(path, row, cell, kind)
+    kind = next((name for name in _KINDS if _misfit(cells, name) is None), None)
+    if kind is None:
+        kind = next((name for name, pattern in _KINDS.items() if pattern.fullmatch(cells[0])), None)
+        row = 0 if kind is None else _misfit(cells, kind) or 0
+        raise _fault(path, heading + row + 1, cells[row], kind or f"one time alone: {', '.join(_KINDS)}")
     return _microseconds(cells, kind, path, heading), heading
 
 
+def _misfit(cells: list[str], kind: str) -> int | None:
+    """The first row that is not of this kind; None where all are."""
+    return next((row for row, cell in enumerate(cells) if not _KINDS[kind].fullmatch(cell)), None)
+
+
+def _text(path: Path) -> str:
+    content = path.read_bytes()
+    try:
+        return content.decode("utf-16" if content.startswith(_MARKS) else "utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(str(path), "bytes that are not text", "a time stamp a row", "restore the file") from None
+
+
 def _microseconds(cells: list[str], kind: str, path: Path, heading: int) -> NDArray[np.int64]:
-    whole, seconds, _ = _KINDS
-    if kind == whole:
-        return np.array(cells, dtype=np.int64)
-    if kind == seconds:
-        return gps_time.microseconds(np.array(cells, dtype=float), "s", str(path))
+    if kind == _WHOLE:
+        for row in (row for row, cell in enumerate(cells) if abs(int(cell)) >= 2**63):
+            raise _fault(path, heading + row + 1, cells[row], kind)
+        return np.array([int(cell) for cell in cells], dtype=np.int64)
+    cells = [cell.replace(",", ".") for cell in cells]
+    if kind in {_SECONDS, _POWERS}:
+        numbers = np.array(cells, dtype=float)
+        unit: gps_time.TimeUnit = "us" if kind == _POWERS and numbers.min() >= _SMALLEST_US else "s"
+        return gps_time.microseconds(numbers, unit, str(path))
     times = pd.to_datetime(pd.Series(cells).str.replace("/", "-"), utc=True, format="ISO8601", errors="coerce")
     for row in np.flatnonzero(times.isna().to_numpy())[:1]:
         raise _fault(path, heading + int(row) + 1, cells[row], kind)

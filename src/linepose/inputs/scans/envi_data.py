@@ -137,10 +137,14 @@ def _data_path(header: Path, named: str | None) -> Path:
     stem = header.with_suffix("")
     beside = {path.name: path for path in header.parent.iterdir() if path.is_file() and path != header}
     by_lower_case = {name.lower(): path for name, path in sorted(beside.items(), reverse=True)}
-    for name in (stem.name, *(f"{stem.name}.{ending}" for ending in _ENDINGS)):
-        found = beside.get(name) or by_lower_case.get(name.lower())
-        if found is not None:
-            return found
+    names = (stem.name, *(f"{stem.name}.{ending}" for ending in _ENDINGS))
+    usual = [beside.get(name) or by_lower_case.get(name.lower()) for name in names]
+    found = list(dict.fromkeys(path for path in usual if path is not None))
+    if len(found) > 1:
+        told = "%s: %s is read, not %s; where that is wrong, add the line `data file = NAME` to the header"
+        log.warning(told, header, found[0].name, " nor ".join(path.name for path in found[1:]))
+    if found:
+        return found[0]
     others = [path for path in beside.values() if path.stem == stem.name and path.suffix.lower() not in _OTHERS]
     if len(others) == 1:
         return others[0]

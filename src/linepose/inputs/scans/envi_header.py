@@ -9,10 +9,11 @@ import logging
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, cast
+from typing import Final
 
 from linepose.errors import InputError
 from linepose.inputs.scans.arcgis_header import arcgis_header, is_arcgis
+from linepose.inputs.scans.envi_words import byte_order_of, data_type_of, interleave_of
 from linepose.inputs.scans.header_layout import LARGEST, EnviHeader, Interleave
 
 _LARGEST_HEADER_BYTES: Final = 50_000_000
@@ -49,13 +50,15 @@ def read_envi_header(path: Path) -> EnviHeader:
         if re.search(r"[1-9]", entries[name].text):
             raise _fault(entries, name, path, "0, 0", "save the scan without frame offsets")
     _check_file_type(entries, path)
+    if entries.get("file compression", _Entry("0", 0)).text not in {"0", ""}:
+        raise _fault(entries, "file compression", path, "0", "save the scan without compression")
     sizes = {key: _whole(entries, key, path, int(key != "lines"), most) for key, most in LARGEST.items()}
-    data_type = _whole(entries, "data type", path, 0, 255)
+    data_type = data_type_of(_needed(entries, "data type", path))
     if data_type not in _REAL_TYPES:
         expected = f"one of ENVI's types {', '.join(map(str, sorted(_REAL_TYPES)))}"
         raise _fault(entries, "data type", path, expected, "convert the scan, for example to uint16 (12)")
     interleave = _interleave(entries, sizes["bands"], path)
-    byte_order = _whole(entries, "byte order", path, 0, 1) if "byte order" in entries else 0
+    byte_order = _byte_order(entries, path)
     offset = _whole(entries, "header offset", path, 0, _LARGEST_OFFSET_BYTES) if "header offset" in entries else 0
     missing = [key for key in ("byte order", "header offset") if key not in entries]
     if data_type == _ONE_BYTE and "byte order" in missing:
@@ -94,7 +97,7 @@ def data_files(path: Path) -> list[str]:
 
 def _name_alone(data_file: str) -> str:
     """The name of a file without the folders of the machine on which it was recorded."""
-    return data_file.replace("\\", "/").rpartition("/")[2]
+    return data_file.strip("{}\"' ").replace("\\", "/").rpartition("/")[2]
 
 
 def _is_envi(text: str) -> bool:
@@ -145,6 +148,8 @@ def _entries(text: str, path: Path) -> dict[str, _Entry]:
             value = "\n".join(parts)
         else:
             value = value.split(";", 1)[0].strip().strip("\"'")
+        if not value and key in _UNFILLED:
+            continue
         entry = entries.setdefault(key, _Entry(value, start))
         if key in _USED and entry.text.lower() != value.lower():
             place, found = f"{path}, line {start}, {key}", repr(value[:_BRIEFLY])
@@ -153,6 +158,7 @@ def _entries(text: str, path: Path) -> dict[str, _Entry]:
     return entries
 
 
+_UNFILLED: Final = {"byte order", "header offset", "file type", "data file"}  # as good as missing without a value
 _USED: Final = {*LARGEST, "data type", "interleave", "byte order", "header offset", "file type", "data file"}
 
 
@@ -170,17 +176,32 @@ def _interleave(entries: dict[str, _Entry], n_bands: int, path: Path) -> Interle
         raise InputError(
             f"{path}: interleave", "no such key", f"one of {', '.join(_INTERLEAVES)}", "restore the header"
         )
-    found = entries["interleave"].text.lower()
-    if found not in _INTERLEAVES:
+    found = interleave_of(entries["interleave"].text)
+    if found is None:
         raise _fault(entries, "interleave", path, f"one of {', '.join(_INTERLEAVES)}", "restore the header")
-    return cast("Interleave", found)
+    return found
+
+
+def _byte_order(entries: dict[str, _Entry], path: Path) -> int:
+    """0, the least significant byte first, where the header does not say it."""
+    if "byte order" not in entries:
+        return 0
+    found = byte_order_of(entries["byte order"].text)
+    if found is None:
+        raise _fault(entries, "byte order", path, "0 (little-endian) or 1 (big-endian)", "restore the header")
+    return found
+
+
+def _needed(entries: dict[str, _Entry], key: str, path: Path, expected: str = "a whole number") -> str:
+    """The text of a key that is needed."""
+    if key not in entries:
+        raise InputError(f"{path}: {key}", "no such key", expected, "restore the header")
+    return entries[key].text
 
 
 def _whole(entries: dict[str, _Entry], key: str, path: Path, least: int, most: int) -> int:
     """A whole number of a key that is needed, within these bounds."""
-    if key not in entries:
-        raise InputError(f"{path}: {key}", "no such key", "a whole number", "restore the header")
-    match = re.fullmatch(r"([+-]?\d{1,30})(\.0*)?", entries[key].text)
+    match = re.fullmatch(r"([+-]?\d{1,30})(\.0*)?", _needed(entries, key, path))
     if match is None:
         raise _fault(entries, key, path, "a whole number", "restore the header")
     number = int(match[1])

@@ -1,6 +1,7 @@
 """Times of the lines of HySpex's cameras: the last column of the NAV text, a row a frame (seconds of the GPS week)."""
 
 import datetime
+import re
 from pathlib import Path
 from typing import Final
 
@@ -30,8 +31,8 @@ def hyspex_times(scan: Path, path: Path, week: int | None) -> tuple[NDArray[np.i
         raise InputError(str(path), found, expected, "set source.gps_week")
     seconds: list[float] = []
     above = 0
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), start=1):
-        words = line.replace(",", " ").split()
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), start=1):
+        words = re.split(r"[\s,;]+", line.strip())
         try:
             values = [plain_float(word) for word in words]
         except ValueError:
@@ -40,8 +41,11 @@ def hyspex_times(scan: Path, path: Path, week: int | None) -> tuple[NDArray[np.i
             above = number
         elif len(values) >= _COLUMNS:
             seconds.append(values[_COLUMNS - 1])
-        elif words:
+        elif line.strip():
             expected = f"{_COLUMNS} numbers: frame, longitude, latitude, height, roll, pitch, heading, seconds"
             raise InputError(f"{path}, row {number}", repr(line[:_BRIEFLY]), expected, "mend or remove the row")
+    if not seconds:
+        found, expected = "no row of numbers", "rows of a frame each, whose eighth column is the second of the GPS week"
+        raise InputError(str(path), found, expected, "restore the file, or correct source.time_file")
     of_week_us = gps_time.microseconds(np.array(seconds, dtype=float), "s", str(path))
     return gps_time.unix_from_week_of_first(week, of_week_us, str(path)), above

@@ -13,6 +13,7 @@ from linepose.inputs import gps_time
 from linepose.inputs.location_files import location_rows, location_unix_us
 from linepose.inputs.number_files import plain_float, plain_whole
 from linepose.inputs.observed_points import select_scans
+from linepose.inputs.patterns import in_any_case
 from linepose.inputs.scans.csv_times import read_times
 from linepose.inputs.scans.event_times import burst, event_times
 from linepose.inputs.scans.hyspex_times import hyspex_times
@@ -168,9 +169,9 @@ def _names(scan: Path) -> list[str]:
 
 
 def _first_file(names: list[str], scan: Path) -> Path:
-    for name in names:
-        if (scan.parent / name).is_file():
-            return scan.parent / name
+    for path in (in_any_case(scan.parent / name) for name in names):
+        if path.is_file():
+            return path
     found = f"no {' or '.join(dict.fromkeys(names))} beside it"
     raise InputError(
         str(scan), found, "what its time stamps are made of", "put the file there, or correct source.time_stamps"
@@ -179,7 +180,7 @@ def _first_file(names: list[str], scan: Path) -> Path:
 
 def _rows(path: Path) -> list[str]:
     try:
-        rows = path.read_text(encoding="utf-8").rstrip().splitlines()
+        rows = path.read_text(encoding="utf-8-sig").rstrip().splitlines()
     except UnicodeDecodeError:
         raise InputError(str(path), "bytes that are no text", "time stamps", "restore the file") from None
     if not rows:

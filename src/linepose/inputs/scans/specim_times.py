@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from linepose.errors import InputError
 from linepose.inputs.nmea import sentences
+from linepose.inputs.patterns import in_any_case
 from linepose.inputs.scans import header_time
 from linepose.inputs.scans.scan_files import scan_size
 
@@ -28,7 +29,7 @@ def specim_times(scan: Path) -> tuple[NDArray[np.int64], Path]:
     """Unix times (us) of a scan's lines, and the file that they are of."""
     words = header_time.words_of(scan)
     n_lines, rate = scan_size(scan)[0], header_time.line_rate_hz(words)
-    navigation = scan.with_suffix(".nav")
+    navigation = in_any_case(scan.with_suffix(".nav"))
     if navigation.is_file():
         frames, times = _synchronised(navigation, header_time.day_of(words))
         if len(frames):
@@ -55,6 +56,10 @@ def _synchronised(path: Path, day: datetime.date | None) -> tuple[NDArray[np.int
             raise InputError(f"{path}, line {sentence.line}", found, expected, remedy) from None
         times.append(sentence.time_us)
     numbers, stamps = np.array(frames, dtype=np.int64), np.array(times, dtype=np.int64)
+    repeated = np.flatnonzero((np.diff(numbers) == 0) & (np.diff(stamps) == 0)) + 1
+    if repeated.size:
+        log.warning("%s: %d $SPTSMP that repeat the one before are passed over", path, repeated.size)
+        numbers, stamps = np.delete(numbers, repeated), np.delete(stamps, repeated)
     for row in np.flatnonzero((np.diff(numbers) <= 0) | (np.diff(stamps) <= 0))[:1]:
         found = (
             f"frame {numbers[row + 1] + 1} at {stamps[row + 1]} us after frame {numbers[row] + 1} at {stamps[row]} us"

@@ -78,10 +78,30 @@ def assert_mean(path, cube):
         "ENVI\nwavelength = {400.0, 500.0} ; nm\n" + KEYS,
         "ENVI\n" + KEYS + "lines = 7\n",
         "ENVI\nmajor frame offsets = {0, 0}\n" + KEYS,
+        "ENVI\n" + KEYS.replace("= bil", "= Band Interleaved by Line"),
+        "ENVI\n" + KEYS.replace("= bil", "= BIL (band interleaved by line)"),
+        "ENVI\n" + KEYS.replace("byte order = 0", "byte order = Host (Intel)"),
+        "ENVI\n" + KEYS.replace("byte order = 0", "byte order = "),
+        "ENVI\n" + KEYS.replace("= 12", "= 12 - unsigned integer"),
+        "ENVI\n" + KEYS.replace("= 12", "= uint16"),
+        'ENVI\ndata file = "D:\\rec 1\\scan.raw"\n' + KEYS,
     ],
 )
 def test_headers_of_one_cube_give_its_mean(write, cube, header):
     assert_mean(write(header), cube)
+
+
+@pytest.mark.parametrize("words", ["1", "Network (IEEE)", "big endian", "Motorola"])
+def test_big_endian_in_words(write, cube, words):
+    values = cube.transpose(0, 2, 1).astype(">u2")
+    assert_mean(write("ENVI\n" + KEYS.replace("byte order = 0", f"byte order = {words}"), values), cube)
+
+
+@pytest.mark.parametrize(
+    ("words", "axes"), [("Band Sequential", (2, 0, 1)), ("bsq ", (2, 0, 1)), ("Band interleaved by pixel", (0, 1, 2))]
+)
+def test_order_in_words(write, cube, words, axes):
+    assert_mean(write("ENVI\n" + KEYS.replace("= bil", f"= {words}"), cube.transpose(axes)), cube)
 
 
 def test_keys_that_envi_does_without_are_taken_as_it_takes_them(write, cube, caplog):
@@ -121,6 +141,13 @@ def test_two_files_that_may_be_the_data_are_told(write, tmp_path):
         spectral_mean(path)
 
 
+def test_which_of_two_data_files_is_read_is_told(write, cube, tmp_path, caplog):
+    path = write("ENVI\n" + KEYS)
+    (tmp_path / "scan.bil").write_bytes(bytes(cube.nbytes))
+    assert_mean(path, cube)
+    assert "scan.raw is read, not scan.bil" in caplog.text
+
+
 @pytest.mark.parametrize(
     ("header", "told"),
     [
@@ -129,6 +156,9 @@ def test_two_files_that_may_be_the_data_are_told(write, tmp_path):
             r"scan.hdr, line 6, interleave: found 'five', expected one of bil",
         ),
         ("ENVI\n" + KEYS.replace("interleave = bil\n", ""), r"scan.hdr: interleave: found no such key"),
+        ("ENVI\n" + KEYS.replace("= bil", "= bil or bip"), r"line 6, interleave: found 'bil or bip', expected one"),
+        ("ENVI\n" + KEYS.replace("order = 0", "order = native"), r"line 7, byte order: found 'native', expected 0 \("),
+        ("ENVI\nfile compression = 1\n" + KEYS, r"line 2, file compression: found 1, expected 0"),
         ("ENVI\nfile type = TIFF\n" + KEYS, r"line 2, file type: found 'TIFF', expected ENVI Standard"),
         ("ENVI\n" + KEYS.replace("11", "eleven"), r"line 2, samples: found 'eleven', expected a whole number"),
         ("ENVI\n" + KEYS.replace("11", "1" * 40), r"line 2, samples: found 1111"),

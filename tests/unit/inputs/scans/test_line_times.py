@@ -88,10 +88,11 @@ def test_resonons_names_of_cubes_are_read(tmp_path):
     (tmp_path / "run.hdr").rename(tmp_path / "run.bil.hdr")
     location(tmp_path / "run.lcf")
     (tmp_path / "run.bil.times").write_text("\n".join(f"{time / 1e6}" for time in LINES))
+    (tmp_path / "run.lcf").rename(tmp_path / "run.LCF")
     mine = source(scans="*.hdr", time_stamps="resonon")
     scan = read_scan(tmp_path / "run.bil.hdr", line_times_of(mine))
     assert np.all(scan.intensity == 3)
-    assert {path.name for path in mine.files(tmp_path)} >= {"run.bil", "run.bil.hdr", "run.bil.times", "run.lcf"}
+    assert {path.name for path in mine.files(tmp_path)} >= {"run.bil", "run.bil.hdr", "run.bil.times", "run.LCF"}
 
 
 @pytest.mark.parametrize(

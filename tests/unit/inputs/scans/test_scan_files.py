@@ -178,7 +178,7 @@ def test_intensity_that_is_no_number(tmp_path, cube):
         (START_US + np.r_[0:10, 5:18], "row 12: found time"),
         (np.arange(23) + 1_466_000_000, "they look like seconds"),
         (np.arange(23) + 1_466_000_000, "row 2, column 1: found time 1466000000,"),
-        (["soon"] * 23, "row 2: found 'soon', expected a whole number"),
+        (["soon"] * 23, "row 2: found 'soon', expected one time alone: a whole number"),
     ],
 )
 def test_times_that_cannot_be_right(tmp_path, cube, times, told):

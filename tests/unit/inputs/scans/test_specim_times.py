@@ -42,6 +42,13 @@ def test_rate_of_the_frames_where_the_header_has_none(tmp_path):
     np.testing.assert_array_equal(times, START_US + 20_000 * np.arange(200))
 
 
+def test_a_repeated_frame_is_passed_over_and_endings_are_of_any_case(tmp_path, caplog):
+    path = scan(tmp_path, [(0.02, 1), (1.02, 51), (1.02, 51)])
+    (tmp_path / "scan.nav").rename(tmp_path / "scan.NAV")
+    np.testing.assert_array_equal(specim_times(path)[0], START_US + 20_000 * np.arange(200))
+    assert "1 $SPTSMP that repeat the one before" in caplog.text
+
+
 def test_frames_that_miss_the_rate_are_told(tmp_path, caplog):
     times, _ = specim_times(scan(tmp_path, [(0.02, 1), (1.12, 51)]))
     assert times[50] - times[0] == 1_100_000

@@ -45,7 +45,7 @@ def nav_text(path, first_s=OF_WEEK_S, rows=5, above=""):
 @pytest.mark.parametrize(
     ("more", "keys"), [("", {"gps_week": WEEK}), ("acquisition date = DATE(yyyy-mm-dd): 2023-11-29\n", {})]
 )
-@pytest.mark.parametrize("above", ["", "frame lon lat alt roll pitch heading time\n"])
+@pytest.mark.parametrize("above", ["", "frame lon lat alt roll pitch heading time\n", "\ufefffra;lon\n"])
 def test_hyspex_times_are_the_last_column(tmp_path, more, keys, above):
     scan = scan_of(tmp_path, more=more)
     nav_text(tmp_path / "run-01.txt", above=above)
@@ -102,6 +102,11 @@ def test_start_and_rate_of_keys(tmp_path, start):
     [
         "fps = 100\nacquisition date = DATE(yyyy-mm-dd): 2026-05-01\nStart Time = UTC TIME: 12:00:00.25\n",
         "framerate = 100.000\nacquisition time = 2026-05-01T12:00:00.25Z\n",
+        "fps = 100,0\nacquisition time = 2026-05-01T14:00:00.25+02:00\n",
+        "frame rate = 1e2 Hz\nacquisition time = {2026-05-01T12:00:00.25Z}\n",
+        "fps = {100}\nacquisition date = DATE(dd-mm-yyyy): 01-05-2026\nStart Time = UTC TIME: 12:00:00.25\n",
+        "fps = 100\nacquisition date = DATE(yyyy-mm-dd): 2026-05-01\nStart Time = UTC TIME: 12:00:00\n"
+        "GPS Start Time = UTC TIME: 12:00:00.25\n",
     ],
 )
 def test_start_and_rate_of_the_header(tmp_path, more):
@@ -135,6 +140,16 @@ def test_headwalls_frames_under_another_name(tmp_path):
             lambda d: (d / "run-01.txt").write_text("1 2 3 4 5 6 7 280800\n2 2 3 4 5 6 7 2_8\n"),
             {"time_stamps": "hyspex", "gps_week": WEEK},
             r"run-01.txt, row 2: found '2 2 3 4 5 6 7 2_8', expected 8 numbers",
+        ),
+        (
+            lambda d: (d / "run-01.txt").write_text("frame lon lat\n"),
+            {"time_stamps": "hyspex", "gps_week": WEEK},
+            r"run-01.txt: found no row of numbers, expected rows of a frame each",
+        ),
+        (
+            lambda d: None,
+            {"time_stamps": "rate", "line_rate_hz": 9.0, "start_times": {"run-01": datetime.date(2026, 5, 1)}},
+            r"expected a date and time, not the day alone, for run-01",
         ),
         (lambda d: None, {"time_stamps": "rate"}, r"found no rate of the lines, .*; set source.line_rate_hz"),
         (lambda d: None, {"time_stamps": "rate", "line_rate_hz": 9.0}, r"; add run-01 to source.start_times"),
