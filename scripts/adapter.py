@@ -1,18 +1,14 @@
 """What every script shares: its log, its threads, and errors told in one line."""
 
 import logging
-import os
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from linepose.errors import one_line
-from linepose.pipeline.parent_process import SNAKEMAKE, exit_with_process
-from linepose.pipeline.provenance import FOR_THE_ORDER_ALONE, Provenance, provenance_of_job
-from linepose.pipeline.run_lock import hold_job_lock
-from linepose.tables import mark_tables
+from linepose.pipeline.fork_server.client import run_forked
 
 _HUSHED = ("numba", "matplotlib", "fontTools", "PIL")
 
@@ -31,11 +27,15 @@ def stage(job: Any) -> Iterator[logging.Logger]:
 
     `job` is the `snakemake` object of the script. Tracebacks of unforeseen faults go to the log and the terminal.
     Each table that it writes says which settings, inputs and code made it. When Snakemake is killed the job ends too,
-    or it would be in the way of the run that goes on.
+    or it would be in the way of the run that goes on. A job of one thread runs in a fork of its run's fork server.
     """
-    exit_with_process(SNAKEMAKE)
-    hold_job_lock(Path())
-    os.environ.setdefault("NUMBA_NUM_THREADS", str(job.threads))
+    code = run_forked(sys.argv[0], job.threads)
+    if code is not None:
+        sys.exit(code)
+    from linepose.errors import one_line
+    from linepose.pipeline.job import begin_job, told_cost
+
+    begun_s = time.monotonic()
     log = logging.getLogger(f"linepose.{job.rule}")
     handlers = [logging.FileHandler(str(job.log[0]), mode="w"), logging.StreamHandler()]
     for handler in handlers:
@@ -43,8 +43,7 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     logging.basicConfig(level=logging.INFO, handlers=handlers)
     for name in _HUSHED:
         logging.getLogger(name).setLevel(logging.WARNING)
-    if any(Path(file).suffix in (".parquet", "") for file in job.output):
-        mark_tables(_provenance(job).text())
+    begin_job(job)
     try:
         yield log
     except Exception as error:
@@ -54,9 +53,5 @@ def stage(job: Any) -> Iterator[logging.Logger]:
         else:
             log.error("%s", told)
         sys.exit(1)
-
-
-def _provenance(job: Any) -> Provenance:
-    found = [job.input.get(name, []) for name in FOR_THE_ORDER_ALONE]
-    order_alone = {file for files in found for file in ([files] if isinstance(files, str) else files)}
-    return provenance_of_job(dict(job.params.items()), [file for file in job.input if file not in order_alone])
+    with Path(job.log[0]).open("a") as file:
+        print(f"{log.name}: {told_cost(begun_s)}", file=file)

@@ -10,7 +10,7 @@ from pathlib import Path
 from cluster import CORES
 from tiny_project import QUICK, ROOT, STUDY, Project
 
-NOT_COMPARED = ("logs", "benchmarks")  # of results/: what was told, and how long it took
+NOT_COMPARED = ("logs",)  # of results/: what was told, and how long it took
 CELL = "results/coverage/cells/tiny/white/published.parquet"
 BASIN = {"basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]}}
 LOCAL = ["--cores", str(CORES)]

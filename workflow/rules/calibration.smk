@@ -37,8 +37,6 @@ rule adjust:  # all at once: no observation is removed, and the posterior needs 
         files="results/{platform}/mcmc_files.txt",
     log:
         "results/logs/{platform}/adjust.log",
-    benchmark:
-        "results/benchmarks/{platform}/adjust.tsv"
     wildcard_constraints:
         platform=names_of(ADJUSTED_PLATFORMS),
     conda:
@@ -62,8 +60,6 @@ rule reject_outliers:
         "results/{platform}/outliers.parquet",
     log:
         "results/logs/{platform}/reject_outliers.log",
-    benchmark:
-        "results/benchmarks/{platform}/reject_outliers.tsv"
     wildcard_constraints:
         platform=names_of(REMOVING_PLATFORMS),
     conda:
@@ -110,8 +106,6 @@ rule sample:
         files="results/{platform}/mcmc_files.txt",
     log:
         "results/logs/{platform}/sample.log",
-    benchmark:
-        "results/benchmarks/{platform}/sample.tsv"
     wildcard_constraints:
         platform=names_of(REMOVING_PLATFORMS),
     conda:

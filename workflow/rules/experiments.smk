@@ -17,8 +17,6 @@ for EXPERIMENT in EXPERIMENTS:
             },
         log:
             f"results/logs/{{platform}}/{EXPERIMENT.name}.log",
-        benchmark:
-            f"results/benchmarks/{{platform}}/{EXPERIMENT.name}.tsv"
         wildcard_constraints:
             platform=names_of(
                 REMOVING_PLATFORMS if EXPERIMENT.removal else PROJECT.platforms

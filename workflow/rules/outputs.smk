@@ -16,8 +16,6 @@ rule map:  # finished scans stay in results/NAME/map when a run is killed, so th
         files="results/{platform}/map_files.txt",
     log:
         "results/logs/{platform}/map.log",
-    benchmark:
-        "results/benchmarks/{platform}/map.tsv"
     wildcard_constraints:
         platform=names_of(MAPPED_PLATFORMS),
     conda:
@@ -46,8 +44,6 @@ rule strip_fit:
         strip_fit="results/{platform}/strip_fit.parquet",
     log:
         "results/logs/{platform}/strip_fit.log",
-    benchmark:
-        "results/benchmarks/{platform}/strip_fit.tsv"
     wildcard_constraints:
         platform=names_of(MAPPED_PLATFORMS),
     conda:
@@ -86,8 +82,6 @@ rule figures:
         ),
     log:
         "results/logs/{platform}/figures.log",
-    benchmark:
-        "results/benchmarks/{platform}/figures.tsv"
     conda:
         "../../environment.yml"
     resources:

@@ -10,8 +10,6 @@ rule simulate:
         truth="results/{platform}/truth.parquet",
     log:
         "results/logs/{platform}/simulate.log",
-    benchmark:
-        "results/benchmarks/{platform}/simulate.tsv"
     wildcard_constraints:
         platform=names_of(PROJECT.simulated + PROJECT.flown),
     conda:
@@ -78,8 +76,6 @@ rule coverage_part:  # a share of a cell's surveys, on one core: a job of its ow
         ),
     log:
         "results/logs/coverage/{platform}/{regime}/{noise_model}/{scatteritem}.log",
-    benchmark:
-        "results/benchmarks/coverage/{platform}/{regime}/{noise_model}/{scatteritem}.tsv"
     conda:
         "../../environment.yml"
     resources:

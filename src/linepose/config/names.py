@@ -7,7 +7,7 @@ from linepose.errors import InputError
 
 _NAME: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*(?<!\.)", re.ASCII)
 _RESERVED: Final = frozenset(  # folders of results that are no platform's
-    {"benchmarks", "compiled", "coverage", "datasets", "logs", "paper", "regression", "report", "report.html", "tables"}
+    {"compiled", "coverage", "datasets", "logs", "paper", "regression", "report", "report.html", "tables"}
 )
 
 
