@@ -17,7 +17,7 @@ from typing import Final
 from linepose.pipeline.parent_process import SNAKEMAKE
 
 FOLDER: Final = "LINEPOSE_FORK_SERVER"
-"""Environment variable: the folder of the server's socket, of a name that nobody can guess; where none, all run alone."""
+"""Environment variable: the folder of the server's socket, of a name that nobody can guess."""
 
 BEGUN: Final = b"b"
 """What a job sends when it begins; its exit code follows when it ends."""
@@ -66,10 +66,8 @@ def _run(connection: socket.socket, script: str) -> int | None:
     except KeyboardInterrupt:  # which the job has from the terminal too
         return 130
     if not code:
-        print(
-            f"{Path(script).name}: found its process killed, expected its end; is there too little memory?",
-            file=sys.stderr,
-        )
+        fault = "found its process killed, expected its end; see whether memory was short, and run again"
+        print(f"{Path(script).name}: {fault}", file=sys.stderr)
         return 137
     return code[0]
 
@@ -80,7 +78,7 @@ def _connect(folder: Path) -> socket.socket:
     address = str(folder / "socket")
     with (folder / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if not os.path.exists(address):
+        if not Path(address).exists():
             _start(address)
     connection = socket.socket(socket.AF_UNIX)
     try:

@@ -48,10 +48,10 @@ def _serve(listener: socket.socket, snakemake: int) -> None:
         return
     while True:
         ended_jobs = [process.sentinel for process in multiprocessing.active_children()]
-        ready, _, _ = select.select([listener, end, *ended_jobs], [], [])
+        ready, _, _ = select.select([listener.fileno(), end, *ended_jobs], [], [])
         if end in ready:
             return
-        if listener in ready:
+        if listener.fileno() in ready:
             with contextlib.suppress(OSError, ValueError):  # a client that was killed as it asked
                 _begin(listener)
 

@@ -89,9 +89,8 @@ def test_a_job_of_several_threads_or_without_a_run_is_not_handed_over(snakemake,
 
 def test_a_job_whose_server_was_killed_runs_in_its_own_process(snakemake, tmp_path):
     server = tmp_path / "server"
-    assert (
-        run_forked(script(tmp_path, f"import os; open({str(server)!r}, 'w').write(str(os.getppid()))"), threads=1) == 0
-    )
+    tells = script(tmp_path, f"import os; open({str(server)!r}, 'w').write(str(os.getppid()))")
+    assert run_forked(tells, threads=1) == 0
     os.kill(int(server.read_text()), signal.SIGKILL)
     until(lambda: not is_alive(int(server.read_text())))
     assert run_forked(script(tmp_path, ""), threads=1) is None
