@@ -21,7 +21,7 @@ TimeScale = Literal["gps", "unix"]
 
 GPS_EPOCH_US: Final = 315_964_800_000_000  # 1980-01-06 as Unix time
 WEEK_US: Final = 604_800_000_000
-_OLDEST_DEVICE_US: Final = 1_104_537_600_000_000  # 2005-01-01
+_LOST_WEEKS: Final = 1024  # of a receiver whose week number has begun from 0 again
 _MOST_WEEKS: Final = 10_000
 _FARTHEST_US: Final = 3.2e17  # ten thousand years: weeks and epochs added to it stay within 64 bits
 _UNIT_US: Final[dict[TimeUnit, float]] = {"s": 1e6, "ms": 1e3, "us": 1.0, "ns": 1e-3}
@@ -138,11 +138,12 @@ def week_at(unix_us: int) -> int:
 
 
 def tell_lost_weeks(unix_us: int, place: str) -> None:
-    """Warn of a time that is older than navigation systems with GPS: the receiver may have lost 1024 weeks."""
-    if unix_us < _OLDEST_DEVICE_US:
-        told = "%s: times of %s, before such devices were built: the receiver may have lost 1024 GPS weeks (%s); add "
-        told += "619315200 s to all its times"
-        log.warning(told, place, _day(unix_us), _day(unix_us + 1024 * WEEK_US))
+    """Warn of a time so old that 1024 weeks later is not in the future: the receiver may have lost them."""
+    later_us = unix_us + _LOST_WEEKS * WEEK_US
+    if later_us < leap_seconds().expires_us:
+        told = "%s: times of %s: the receiver may have lost 1024 GPS weeks (%s); if it has, add 619315200 s to all its "
+        told += "times"
+        log.warning(told, place, _day(unix_us), _day(later_us))
 
 
 def _total_s(start_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:

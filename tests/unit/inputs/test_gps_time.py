@@ -85,3 +85,10 @@ def test_a_week_that_is_missing_or_a_time_outside_it_is_told():
         gps_time.unix_from_week_of_first(None, np.array([0]), "log")
     with pytest.raises(InputError, match=r"log, record 2: found 1700000000.000 s of the GPS week"):
         gps_time.unix_from_week_of_first(2100, np.array([0, 1_700_000_000_000_000]), "log")
+
+
+@pytest.mark.parametrize(("unix_s", "is_told"), [(1_126_785_600, True), (1_440_000_000, False)])
+def test_weeks_that_a_receiver_of_today_lost_are_told(caplog, unix_s, is_told):
+    """2005-09-15 is 1024 weeks before 2025-05-01; 2015 is no time that a lost rollover leads to yet."""
+    gps_time.tell_lost_weeks(unix_s * 1_000_000, "log.nmea")
+    assert ("may have lost 1024 GPS weeks (2025-05-01)" in caplog.text) == is_told

@@ -64,6 +64,7 @@ class _Rows:
     attitudes: list[list[float]] = field(default_factory=list)
     sigmas: list[list[float]] = field(default_factory=list)
     without_fix: int = 0
+    without_height: int = 0
     position_sigma: list[float] = field(default_factory=lambda: [np.nan] * 3)
     heading: float = np.nan
 
@@ -90,11 +91,15 @@ def _read_file(path: Path, section: NmeaSection) -> tuple[Poses, Covariances]:
         _add(rows, sentence)
     if rows.without_fix:
         log.warning("%s: %d GGA without a fix are left out", path, rows.without_fix)
+    if rows.without_height:
+        told = "%s: %d GGA without a height or the geoid's separation, which is added to it, are left out"
+        log.warning(told, path, rows.without_height)
     fix_us, fixes = _used(rows.fix_us, _table(rows.fixes), f"{path}, GGA")
     angles = np.hstack([_table(rows.attitudes), _table(rows.sigmas, 6)])
     attitude_us, attitudes = _used(rows.attitude_us, angles, f"{path}, PASHR")
     if len(fix_us) < 2:
-        raise InputError(str(path), f"{len(fix_us)} GGA with a fix", "two or more", "log GGA throughout the drive")
+        found = f"{len(fix_us)} GGA with a fix{' and a height above the ellipsoid' if rows.without_height else ''}"
+        raise InputError(str(path), found, "two or more", "log GGA throughout the drive")
     if not len(attitude_us):
         found, expected = "no PASHR with roll, pitch and heading", "an attitude"
         raise InputError(str(path), found, expected, "log PASHR too, or read another log of the navigation system")
@@ -141,8 +146,11 @@ def _add_fix(rows: _Rows, time_us: int, content: Any) -> None:
     if not content.gps_qual or not content.lat or not content.lon:
         rows.without_fix += 1
         return
-    rows.fix_us.append(time_us)
     height = _number(content.altitude) + _number(content.geo_sep)
+    if np.isnan(height):
+        rows.without_height += 1
+        return
+    rows.fix_us.append(time_us)
     rows.fixes.append((content.latitude, content.longitude, height))
 
 

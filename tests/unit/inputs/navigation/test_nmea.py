@@ -83,6 +83,34 @@ def test_day_of_rmc_counts_before_the_key(tmp_path, place):
     np.testing.assert_array_equal(record.log.time_us, MIDNIGHT_US + 86_399_000_000 + 100_000 * np.arange(21))
 
 
+def zda(of_day_s, date="01,05,2024"):
+    return sentence(f"GNZDA,{clock(of_day_s)},{date},00,00")
+
+
+def test_sentences_without_a_day_say_none(tmp_path):
+    """As receivers write them before their first fix."""
+    before = sentence("GNZDA,,,,,,") + sentence("GNRMC,,V,,,,,,,,,N") + sentence("GNRMC,095900.00,V,,,,,,,060180,,,N")
+    record = read(tmp_path, before + rmc(36_000) + "".join(drive()))
+    assert record.log.time_us[0] == MIDNIGHT_US + 36_000_000_000
+
+
+def test_logs_of_two_days_one_behind_the_other(tmp_path):
+    """The second begins later in its day than the first, with a GGA before the sentence that says the day."""
+    second = drive(40_000)
+    second.insert(1, zda(40_000, "02,05,2024"))
+    record = read(tmp_path, rmc(36_000) + "".join(drive() + second))
+    first_us = MIDNIGHT_US + 36_000_000_000 + 100_000 * np.arange(21)
+    np.testing.assert_array_equal(record.log.time_us, [*first_us, *(first_us + 86_400_000_000 + 4_000_000_000)])
+
+
+def test_a_sentence_that_is_late_at_midnight_is_of_the_day_before(tmp_path):
+    parts = drive(86_398)
+    parts.insert(2, rmc(86_400, "020524"))
+    late = "".join(parts).replace(pashr(86_399.9), "") + pashr(86_399.9)
+    record = read(tmp_path, late)
+    np.testing.assert_array_equal(record.log.time_us, MIDNIGHT_US + 86_398_000_000 + 100_000 * np.arange(21))
+
+
 def test_day_of_the_scans_where_nothing_says_it(tmp_path):
     (tmp_path / "a-times.csv").write_text(f"{MIDNIGHT_US + 5}\n{MIDNIGHT_US + 6}\n")
     (tmp_path / "a.png").touch()
@@ -117,6 +145,16 @@ def test_what_is_left_out_is_counted(tmp_path, caplog):
         ("".join(drive()), {}, r"found no sentence with a date \(RMC, ZDA\).*; set source.navigation.date"),
         (gga(1) + gga(2), {"date": DAY}, r"log.nmea: found no PASHR with roll, pitch and heading"),
         (gga(1) + pashr(1), {"date": DAY}, r"log.nmea: found 1 GGA with a fix, expected two or more"),
+        (
+            gga(1).split("*")[0].replace("22.500", ""),
+            {"date": DAY},
+            r"found 0 GGA with a fix and a height above the ellipsoid, expected two",
+        ),
+        (
+            gga(1) + gga(2) + sentence("PASHR,ATT,432000.0,40.0,5.0,2.0,0.0,0.0,0"),
+            {"date": DAY},
+            r"log.nmea: found no PASHR with roll, pitch and heading",
+        ),
         (gga(1) + pashr(2) + gga(3), {"date": DAY}, r"PASHR: found no message between two fixes at most 1.5 s apart"),
     ],
 )
