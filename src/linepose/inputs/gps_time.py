@@ -24,6 +24,7 @@ WEEK_US: Final = 604_800_000_000
 _LOST_WEEKS: Final = 1024  # of a receiver whose week number has begun from 0 again
 _MOST_WEEKS: Final = 10_000
 _FARTHEST_US: Final = 3.2e17  # ten thousand years: weeks and epochs added to it stay within 64 bits
+_LIKELY_US: Final = (7e14, 4.1e15)  # 1992 to 2100, since 1970; 2002 on, since 1980
 _UNIT_US: Final[dict[TimeUnit, float]] = {"s": 1e6, "ms": 1e3, "us": 1.0, "ns": 1e-3}
 
 log = logging.getLogger(__name__)
@@ -66,13 +67,21 @@ def microseconds(values: ArrayLike, unit: TimeUnit, place: str = "times") -> NDA
     beyond = ~(np.abs(numbers.astype(float)) * _UNIT_US[unit] <= _FARTHEST_US)
     for row in np.flatnonzero(beyond)[:1]:
         found, expected = f"the time {numbers.ravel()[row]:g} {unit}", "a time within ten thousand years of 1970"
-        raise InputError(f"{place}, record {row + 1}", found, expected, "mend or remove the record")
+        remedy = _other_unit(float(numbers.ravel()[row])) or "mend or remove the record"
+        raise InputError(f"{place}, record {row + 1}", found, expected, remedy)
     if numbers.dtype.kind in "iu":  # whole numbers stay exact: nanoseconds since 1970 exceed what a double holds
         whole = numbers.astype(np.int64)
         return (whole + 500) // 1000 if unit == "ns" else whole * int(_UNIT_US[unit])
     seconds = np.floor(numbers * _UNIT_US[unit] / 1e6)  # apart, so that no digit of the fraction is lost to rounding
     fraction = numbers * (_UNIT_US[unit] / 1e6) - seconds
     return seconds.astype(np.int64) * 1_000_000 + np.rint(fraction * 1e6).astype(np.int64)
+
+
+def _other_unit(value: float) -> str | None:
+    """The remedy where a number is a time of our days in another unit."""
+    low_us, high_us = _LIKELY_US
+    unit = next((unit for unit, unit_us in _UNIT_US.items() if low_us < value * unit_us < high_us), None)
+    return None if unit is None else f"it looks like {unit}: set the time's unit (time_unit: {unit})"
 
 
 def unix_from_gps(gps_us: ArrayLike) -> NDArray[np.int64]:

@@ -14,7 +14,7 @@ from linepose.inputs.navigation.positions_between import positions_between
 from linepose.inputs.navigation.record import Covariances, Poses, check_increasing, nearest_rows
 from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts_of
 from linepose.inputs.navigation.table_file import read_columns
-from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad
+from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad, with_orientation
 from linepose.inputs.navigation.table_times import OF_TEXT
 from linepose.inputs.navigation.usable_rows import usable_rows
 from linepose.inputs.patterns import Files, matching
@@ -99,7 +99,7 @@ def _read(path: Path, section: AttitudeSection) -> tuple[NDArray[np.int64], Floa
         as_text += parts_of(columns.time)
     table = read_columns(path, section, [*names, *sigmas], as_text)
     table.check([*names, *sigmas], "source.navigation.attitude_log.columns")
-    table = _filled(table, names)
+    table = with_orientation(_filled(table, names), columns.attitude)
     time_us = time_us_of(table, section, columns.time, columns.week)
     sigma = table.numbers(sigmas) * to_rad(section) if sigmas else np.full((len(time_us), 3), np.nan)
     return time_us, euler_of(table, section, columns.attitude), sigma

@@ -91,7 +91,7 @@ _ALL: Final = (
             "time_scale": "gps_week",
             "columns": {"time": "8", "position": ("3", "2", "4"), "attitude": ("5", "6", "7")},
         },
-        _first_row(r"\s*\d+(?:\s+[-+]?\d+\.\d+){7}\s*"),
+        _first_row(rf"\s*\d{{1,7}}(?:[\s,;]+{_NUMBER}){{7}}\s*"),
     ),
     Preset(
         "headwall",
@@ -149,7 +149,7 @@ _ALL: Final = (
             "attitude_axes": "enu",
             "columns": {"time": "1", "position": ("2", "3", "4"), "attitude": ("5", "6", "7", "8")},
         },
-        _first_row(rf"\s*\d{{9,10}}(?:\.\d*)?(?:\s+{_NUMBER}){{7}}\s*"),
+        _first_row(rf"\s*(?:\d{{9,10}}(?:\.\d*)?|\d\.\d+[eE]\+0?9)(?:[\s,;]+{_NUMBER}){{7}}\s*"),
     ),
     Preset(
         "rtklib",

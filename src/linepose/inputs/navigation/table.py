@@ -20,11 +20,12 @@ from linepose.inputs.navigation.attitude_log import AttitudeSection, with_attitu
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.named_columns import keys_by_names
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
+from linepose.inputs.navigation.preset_files import as_written, without_absent_sigmas
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
 from linepose.inputs.navigation.table_axes import keys_against
 from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts_of
 from linepose.inputs.navigation.table_file import read_columns
-from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad
+from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad, with_orientation
 from linepose.inputs.navigation.table_times import OF_TEXT
 from linepose.inputs.patterns import Files
 from linepose.settings import Settings
@@ -123,7 +124,7 @@ class TableSection(TimedLayout, GeodeticSection):
 def read(section: TableSection, folder: Path) -> NavigationRecord:
     """The record of the table's files; raises InputError naming a missing column or a broken row."""
     if section.attitude_log is None:
-        parts = [_read_part(one, section) for one in _tables(section, folder)]
+        parts = [_read_part(*one) for one in _tables(section, folder)]
     else:
         parts = [_joined(section, section.attitude_log, folder)]
     poses, covariances = [part[0] for part in parts], [part[1] for part in parts]
@@ -146,13 +147,14 @@ FORMAT: Final = NavigationFormat(
 )
 
 
-def _tables(section: TableSection, folder: Path) -> Iterator[Columns]:
-    """The columns of each file; with a file of times, those of all files as one."""
-    tables = (_columns(path, section) for path in section.paths(folder))
+def _tables(section: TableSection, folder: Path) -> Iterator[tuple[Columns, TableSection]]:
+    """The columns of each file, and the section as it is for that file; with a file of times, those of all as one."""
+    sections = [(path, as_written(path, section)) for path in section.paths(folder)]
+    tables = ((_columns(path, of_file), of_file) for path, of_file in sections)
     if section.times is None:
         yield from tables
         return
-    cells = pd.concat([one.cells for one in tables], ignore_index=True)
+    cells = pd.concat([one.cells for one, _ in tables], ignore_index=True)
     path = folder / section.times
     if not path.is_file():
         raise InputError(
@@ -166,14 +168,15 @@ def _tables(section: TableSection, folder: Path) -> Iterator[Columns]:
     times = times[:-1] if not times[-1] else times
     if len(times) != len(cells):
         raise InputError(str(path), f"{len(times)} times", f"{len(cells)}, one a row of the log", "restore the files")
-    yield Columns(path, cells.assign(time=times), 0)
+    yield Columns(path, cells.assign(time=times), 0), section
 
 
 def _columns(path: Path, section: TableSection) -> Columns:
     columns = section.columns
     apart = [name for name in columns.position[:2] if isinstance(name, str)] if section.latitude_unit == "dms" else []
     several = [name for name in section.of_poses() if not isinstance(name, str)]
-    as_text = [*apart, *(part for name in several for part in parts_of(name))]
+    in_three = [f"{name} {part}" for name in apart for part in "dms"]  # as text, for the sign of -0
+    as_text = [*apart, *in_three, *(part for name in several for part in parts_of(name))]
     if section.time_scale in OF_TEXT:
         as_text += parts_of(columns.time)
     return read_columns(path, section, [*section.of_poses(), *columns.of_sigmas()], as_text, apart)
@@ -192,7 +195,7 @@ def _in_three(columns: Columns, section: TableSection) -> ColumnsSection:
 def _joined(section: TableSection, of_attitudes: AttitudeSection, folder: Path) -> tuple[Poses, Covariances]:
     """Poses of this log's positions and the second log's attitudes, which takes the week and day that it lacks here."""
     given = {key: getattr(section, key) for key in ("gps_week", "date") if getattr(of_attitudes, key) is None}
-    parts = [_fixes(table, section) for table in _tables(section, folder)]
+    parts = [_fixes(*one) for one in _tables(section, folder)]
     time_us, position, sigma = (np.concatenate(values) for values in zip(*parts, strict=True))
     attitudes = of_attitudes.model_copy(update=given)
     place = str(folder / section.file)
@@ -201,7 +204,7 @@ def _joined(section: TableSection, of_attitudes: AttitudeSection, folder: Path) 
 
 def _fixes(table: Columns, section: TableSection) -> tuple[NDArray[np.int64], Floats, Floats]:
     """Times (F,), positions (F, 3) and standard deviations north, east, down (F, 3), NaN where there are none."""
-    table, columns = _whole_rows(table, section)
+    table, columns = _whole_rows(table, without_absent_sigmas(section, table.names))
     time_us = time_us_of(table, section, columns.time, columns.week)
     sigma = np.full((len(time_us), 3), np.nan)
     if columns.sigma_position is not None:
@@ -224,7 +227,8 @@ def _whole_rows(table: Columns, section: TableSection) -> tuple[Columns, Columns
 
 
 def _read_part(table: Columns, section: TableSection) -> tuple[Poses, Covariances]:
-    table, columns = _whole_rows(table, section)
+    table, columns = _whole_rows(table, without_absent_sigmas(section, table.names))
+    table = with_orientation(table, columns.attitude)
     place = str(table.path)
     time_us = time_us_of(table, section, columns.time, columns.week)
     euler = euler_of(table, section, columns.attitude)
@@ -255,7 +259,8 @@ def _position(table: Columns, section: TableSection, columns: ColumnsSection) ->
         return np.stack(
             [table.degrees(latitude), table.degrees(longitude), table.number(height).astype(float)], axis=-1
         )
-    position = table.numbers(columns.position)
+    remedy = "set source.navigation.latitude_unit: dms" if section.coordinates == "geodetic" else ""
+    position = table.numbers(columns.position, remedy)
     if section.coordinates == "enu":
         return axes.ned_from_enu(position)
     if section.coordinates == "geodetic" and section.latitude_unit == "radians":

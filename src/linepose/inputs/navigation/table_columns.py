@@ -1,5 +1,6 @@
 """Columns of a table by their names, as numbers, angles or text; a fault is told with file, row and column."""
 
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
@@ -70,17 +71,19 @@ class Columns:
         first, *others = (self.cells[part].astype(str) for part in parts_of(name))
         return first.str.cat(others, sep=" ") if others else first
 
-    def numbers(self, names: Sequence[Name]) -> Floats:
-        """Columns as numbers (K, N)."""
-        return np.stack([self.number(name).astype(float) for name in names], axis=-1)
+    def numbers(self, names: Sequence[Name], of_degrees: str = "") -> Floats:
+        """Columns as numbers (K, N); `of_degrees` is the remedy where cells have minutes and seconds."""
+        return np.stack([self.number(name, of_degrees).astype(float) for name in names], axis=-1)
 
-    def number(self, name: Name) -> np.ndarray:
+    def number(self, name: Name, of_degrees: str = "") -> np.ndarray:
         """A column as numbers (K,); whole ones stay whole."""
         column = self.cells[name] if isinstance(name, str) else self.text(name)
         numbers = pd.to_numeric(column, errors="coerce")
         for row in np.flatnonzero(numbers.isna().to_numpy() & column.notna().to_numpy())[:1]:
-            told = " ".join(parts_of(name))
-            raise InputError(self.place(row, told), repr(str(column.iloc[row])), "a number", "mend or remove the row")
+            told, cell = " ".join(parts_of(name)), str(column.iloc[row])
+            angle = re.match(_ANGLE, cell)
+            remedy = of_degrees if of_degrees and angle and angle["m"] else "mend or remove the row"
+            raise InputError(self.place(row, told), repr(cell), "a number", remedy)
         return np.asarray(numbers.to_numpy())
 
     def degrees(self, name: Name) -> Floats:

@@ -1,6 +1,7 @@
 """Times and attitudes of a table's rows, and the keys that say in which clock, axes and units they are."""
 
 import datetime
+import logging
 from collections.abc import Sequence
 from typing import Final, Literal
 
@@ -18,6 +19,8 @@ from linepose.inputs.navigation.table_times import OF_DAY, OF_TEXT, TableScale, 
 from linepose.inputs.navigation.text_file import TextLayout
 
 _NOT_UNIT: Final = 1e-3
+
+log = logging.getLogger(__name__)
 
 
 class TimedLayout(TextLayout):
@@ -77,6 +80,17 @@ def euler_of(table: Columns, layout: TimedLayout, names: Sequence[Name]) -> Floa
     return rotations.euler_from_matrix(
         matrices if layout.attitude_axes == "ned" else axes.matrix_from_enu_flu(matrices)
     )
+
+
+def with_orientation(table: Columns, names: Sequence[Name]) -> Columns:
+    """The rows whose quaternion is not zero, as before the attitude is known; how many others there are is told."""
+    if len(names) == 3:
+        return table
+    known = np.any(table.numbers(names) != 0, axis=1)
+    if known.all() or not known.any():
+        return table
+    log.warning("%s: %d of %d rows with a quaternion of zeros are left out", table.path, np.sum(~known), len(known))
+    return table.rows(known)
 
 
 def time_us_of(table: Columns, layout: TimedLayout, time: Name, week: str | None) -> NDArray[np.int64]:

@@ -177,3 +177,93 @@ def test_solution_without_an_attitude_is_told():
     told = r"preset: found rtklib, whose files hold positions alone.*name the log of the attitudes in .*attitude_log"
     with pytest.raises(InputError, match=told):
         TableSection(format="table", file="log.pos", preset="rtklib")
+
+
+CSV = """Week,GPSTime,Latitude,Longitude,H-Ell,Roll,Pitch,Heading
+(weeks),(sec),(deg),(deg),(m),(deg),(deg),(deg)
+2288,252818.25,-33.8892,151.1937,42.5,5,-10,30
+2288,252818.35,-33.8892,151.1937,42.5,5,-10,30
+"""
+WEEKLESS = "\n".join(line[7:] for line in IN_DEGREES.splitlines()[4:]) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("preset", "text", "keys"),
+    [
+        ("inertial_explorer", CSV, {}),
+        ("inertial_explorer", WEEKLESS, {"gps_week": 2288}),
+        ("oxts", "\ufeff" + OXTS.replace(",", ";"), {}),
+        ("oxts", OXTS.replace(",", "; ").replace(".", ","), {"decimal": ","}),
+        ("hyspex", HYSPEX.replace("  ", ", "), {"gps_week": 2288}),
+        ("pospac", re.sub(r", EAST SD.*", "", POSPAC).replace(" 0.02 0.01 0.03 0.1 0.2 0.3", ""), {"gps_week": 2288}),
+    ],
+)
+def test_what_a_file_says_of_itself_counts(tmp_path, preset, text, keys):
+    (tmp_path / "log.txt").write_text(text)
+    section = TableSection(format="table", file="log.txt", preset=preset, origin=ORIGIN, **keys)
+    record = read_navigation(section, tmp_path)
+    np.testing.assert_array_equal(record.log.time_us, [FIRST_US, FIRST_US + 100_000])
+    np.testing.assert_allclose(np.rad2deg(record.log.euler_rad), [[5, -10, 30]] * 2, atol=1e-9)
+    np.testing.assert_allclose(record.log.position_m, 0, atol=1e-6)
+    assert record.covariances is None
+    assert recognised(tmp_path / "log.txt")["preset"] == preset
+
+
+@pytest.mark.parametrize(
+    ("clock", "times"),
+    [
+        ("GPST", ["2023/11/14 22:13:38.25", "2023/11/14 22:13:38.35"]),
+        ("UTC ", ["2023/11/14 22:13:20.25", "2023/11/14 22:13:20.35"]),
+        ("GPST", ["2288 252818.25", "2288 252818.35"]),
+    ],
+)
+def test_clock_of_rtklib_s_heading(tmp_path, caplog, clock, times):
+    text = f"% (lat/lon/height=WGS84/geodetic,Q=1:fix)\n%  {clock}   latitude(deg) longitude(deg)  height(m)\n"
+    (tmp_path / "log.pos").write_text(text + "".join(f"{time} -33.8892 151.1937 42.5 5 -10 30\n" for time in times))
+    section = TableSection(format="table", file="log.pos", preset="rtklib", columns={"attitude": ["6", "7", "8"]})
+    np.testing.assert_array_equal(read_navigation(section, tmp_path).log.time_us, [FIRST_US, FIRST_US + 100_000])
+    assert "log.pos: heights above the geoid" in caplog.text
+
+
+def test_time_of_japan_is_refused(tmp_path):
+    (tmp_path / "log.pos").write_text(
+        "%  JST  latitude(deg) longitude(deg) height(m)\n2023/11/14 22:13:38 1 2 3 4 5 6\n"
+    )
+    section = TableSection(format="table", file="log.pos", preset="rtklib", columns={"attitude": ["6", "7", "8"]})
+    with pytest.raises(InputError, match=r"log.pos: found times in JST, expected GPST or UTC; export the solution"):
+        read_navigation(section, tmp_path)
+
+
+def test_signs_of_angles_between_0_and_minus_1_degree(tmp_path):
+    text = INERTIAL_EXPLORER.replace("-33 53 21.12000  151 11 37.32000", " -0 53 21.12000   -0 11 37.32000")
+    (tmp_path / "log.txt").write_text(text)
+    record = read_navigation(TableSection(format="table", file="log.txt", preset="inertial_explorer"), tmp_path)
+    np.testing.assert_allclose(record.origin, (-0.8892, -0.1937, 42.5), rtol=0, atol=1e-9)
+
+
+def test_quaternions_of_zeros_are_left_out(tmp_path, caplog):
+    (tmp_path / "log.txt").write_text("1700000000.15 0 0 0 0 0 0 0\n" + TUM)
+    record = read_navigation(TableSection(format="table", file="log.txt", preset="tum"), tmp_path)
+    np.testing.assert_array_equal(record.log.time_us, [FIRST_US, FIRST_US + 100_000])
+    assert "log.txt: 1 of 3 rows with a quaternion of zeros are left out" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("text", "keys", "told"),
+    [
+        (
+            TUM.replace(".25 ", "250000000 ").replace(".35 ", "350000000 "),
+            {"preset": "tum"},
+            r"set .*\(time_unit: ns\)",
+        ),
+        (
+            POSPAC.replace("-33.8892", "-33:53:21.12").replace("151.1937", "151:11:37.32"),
+            {"preset": "pospac", "gps_week": 2288},
+            r"LATITUDE: found '-33:53:21.12', expected a number; set source.navigation.latitude_unit: dms",
+        ),
+    ],
+)
+def test_remedy_names_the_key_that_mends(tmp_path, text, keys, told):
+    (tmp_path / "log.txt").write_text(text)
+    with pytest.raises(InputError, match=told):
+        read_navigation(TableSection(format="table", file="log.txt", **keys), tmp_path)
