@@ -10,7 +10,7 @@ from pathlib import Path
 
 import cluster
 from faults import faults
-from project import CELL, LOCAL, NOT_COMPARED, SLURM, differences, results, run, tiny
+from project import LOCAL, NOT_COMPARED, REAL_CELL, SLURM, TINY_ALONE, differences, results, run, tiny
 
 SLOWER_AT_MOST = 1.3  # coverage cell, on SLURM against locally
 N_SURVEYS = int(os.environ.get("N_SURVEYS", "200"))  # of the coverage cell
@@ -29,10 +29,10 @@ def main() -> None:
 
 
 def same_bytes(folder: Path) -> None:
-    """The whole project in two folders; the coverage cell timed by itself, as what comes before it is made already."""
+    """The whole project in two folders; a coverage cell timed by itself, as what comes before it is made already."""
     local, slurm = tiny(folder / "local", N_SURVEYS), tiny(folder / "slurm", N_SURVEYS)
-    whole = [run(local, *LOCAL), run(slurm, *SLURM)]
-    cell = [run(local, *LOCAL, CELL), run(slurm, *SLURM, CELL)]
+    whole = [run(local, *LOCAL, *TINY_ALONE), run(slurm, *SLURM, *TINY_ALONE)]
+    cell = [run(local, *LOCAL, REAL_CELL), run(slurm, *SLURM, REAL_CELL)]
     run(local, *LOCAL, "coverage")
     run(slurm, *SLURM, "coverage")
     unlike = differences(local, slurm)

@@ -12,6 +12,8 @@ from tiny_project import QUICK, ROOT, STUDY, Project
 
 NOT_COMPARED = ("logs",)  # of results/: what was told, and how long it took
 CELL = "results/coverage/cells/tiny/white/published.parquet"
+REAL_CELL = "results/coverage/cells/ladybird-sim/white/adjustment.parquet"  # surveys of a real one's size
+TINY_ALONE = ["--config", 'platforms=["tiny"]']
 BASIN = {"basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]}}
 LOCAL = ["--cores", str(CORES)]
 SLURM = [
@@ -21,9 +23,13 @@ SLURM = [
 
 
 def tiny(folder: Path, n_surveys: int) -> Path:
-    """A new folder with the tiny project: a platform with a sweep, and a coverage study of one cell."""
-    regimes = {"white": {"white_level": 1.0, "noise_models": ["published"]}}
-    study = STUDY | {"coverage": {"n_surveys": n_surveys, "batch_size": 5, "regimes": regimes}}
+    """A new folder with the tiny project: a platform with a sweep, and a coverage study of it and of a larger one."""
+    regimes = {"white": {"white_level": 1.0, "noise_models": ["adjustment", "published"]}}
+    study = (
+        STUDY
+        | {"platforms": ["tiny", "ladybird-sim"]}
+        | {"coverage": {"n_surveys": n_surveys, "batch_size": 5, "regimes": regimes}}
+    )
     folder.mkdir()
     Project(folder).configure(study, {"tiny": QUICK | {"experiments": {**QUICK["experiments"], **BASIN}}})
     return folder
