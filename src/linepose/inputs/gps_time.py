@@ -147,12 +147,12 @@ def week_at(unix_us: int) -> int:
 
 
 def tell_lost_weeks(unix_us: int, place: str) -> None:
-    """Warn of a time so old that 1024 weeks later is not in the future: the receiver may have lost them."""
-    later_us = unix_us + _LOST_WEEKS * WEEK_US
-    if later_us < leap_seconds().expires_us:
-        told = "%s: times of %s: the receiver may have lost 1024 GPS weeks (%s); if it has, add 619315200 s to all its "
-        told += "times"
-        log.warning(told, place, _day(unix_us), _day(later_us))
+    """Warn of a time so old that 1024 weeks later is not in the future: the receiver may have lost them, or 2048."""
+    lost = [n for n in (_LOST_WEEKS, 2 * _LOST_WEEKS) if unix_us + n * WEEK_US < leap_seconds().expires_us]
+    if lost:
+        days = " or ".join(f"{n} GPS weeks ({_day(unix_us + n * WEEK_US)})" for n in lost)
+        told = "%s: times of %s: the receiver may have lost %s; if it has, add them to all its times (1024 weeks: %d s)"
+        log.warning(told, place, _day(unix_us), days, _LOST_WEEKS * WEEK_US // 1_000_000)
 
 
 def _total_s(start_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-_ASCII_CUT: Final = re.compile(rb"[#%][^\r\n]*\*[0-9a-fA-F]{8}\n")  # a message whose CR LF became LF
-
-
+_MESSAGE: Final = re.compile(rb"([#%]\w+A,[^\r\n]*\*[0-9a-fA-F]{8})(\r*\n|\r+(?!\n)|\Z)")  # and its line end
 _MOST_TOGETHER: Final = 100_000
 _NMEA: Final = re.compile(rb"\$[A-Z]{2,}[ -#%-)+-~]*(\*[0-9A-Fa-f]{2})?\s*")  # of another port's log in the same file
 
@@ -44,23 +42,22 @@ def messages(path: Path) -> Iterator[Any]:
 
 def _strange(data: bytes) -> int:
     """How many of these bytes are no NMEA sentences, nor blanks beside those."""
-    left = _NMEA.sub(b"", data)
-    return len(data) if left == data else len(left.strip())
+    return len(_NMEA.sub(b"", data).strip())
 
 
 @contextmanager
 def _with_line_ends(path: Path) -> Iterator[Path]:
-    """The log itself, or where ASCII messages end in LF alone, as editors leave them, a copy with CR LF.
+    """The log itself, or where ASCII messages do not end in CR LF, as editors and copies leave them, a copy with it.
 
     The parser finds messages by CR LF, which the check sum does not cover. Binary messages are kept byte by byte.
     """
     with path.open("rb") as file:
-        whole = not any(_ASCII_CUT.fullmatch(line) for line in file)
+        whole = all(found[2] == b"\r\n" for line in file for found in _MESSAGE.finditer(line))
     if whole:
         yield path
         return
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / path.name
         with path.open("rb") as file, copy.open("wb") as framed:
-            framed.writelines(line[:-1] + b"\r\n" if _ASCII_CUT.fullmatch(line) else line for line in file)
+            framed.writelines(_MESSAGE.sub(rb"\1\r\n", line) for line in file)
         yield copy

@@ -91,4 +91,9 @@ def test_a_week_that_is_missing_or_a_time_outside_it_is_told():
 def test_weeks_that_a_receiver_of_today_lost_are_told(caplog, unix_s, is_told):
     """2005-09-15 is 1024 weeks before 2025-05-01; 2015 is no time that a lost rollover leads to yet."""
     gps_time.tell_lost_weeks(unix_s * 1_000_000, "log.nmea")
-    assert ("may have lost 1024 GPS weeks (2025-05-01)" in caplog.text) == is_told
+    assert ("may have lost 1024 GPS weeks (2025-05-01); if it has" in caplog.text) == is_told
+
+
+def test_weeks_that_a_receiver_of_ten_bits_lost_are_told(caplog):
+    gps_time.tell_lost_weeks(gps_time.GPS_EPOCH_US, "log.gps")
+    assert "lost 1024 GPS weeks (1999-08-22) or 2048 GPS weeks (2019-04-07)" in caplog.text

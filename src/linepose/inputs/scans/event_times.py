@@ -4,6 +4,7 @@ A log beside each scan holds the events of its lines. One log of all scans holds
 of the scans' names; a pause of more than ten times the usual step parts two bursts.
 """
 
+import logging
 import re
 from pathlib import Path
 from typing import Any, Final
@@ -18,6 +19,8 @@ from linepose.inputs.novatel_file import messages
 _EVENT: Final = re.compile(r"MARK\d?(TIME|PVA)S?")
 _PAUSE: Final = 10.0  # of the median step
 
+log = logging.getLogger(__name__)
+
 
 def event_times(path: Path, name: str | None) -> NDArray[np.int64]:
     """Unix times (us) of the events in a log, in their order; `name` is the message's, None for the only one.
@@ -25,20 +28,29 @@ def event_times(path: Path, name: str | None) -> NDArray[np.int64]:
     Raises InputError where there are none, or of several kinds.
     """
     rows: dict[str, list[tuple[int, float]]] = {}
+    invalid = 0
     for message in messages(path):
         kind = str(getattr(message, "name", ""))
         if _EVENT.fullmatch(kind):
             rows.setdefault(kind, []).append(_time_of(message))
+            status = getattr(message, "status", None)
+            invalid += str(getattr(status, "name", status)) == "INVALID"
     if name is None and len(rows) > 1:
         counts = ", ".join(f"{len(alike)} {kind}" for kind, alike in rows.items())
         raise InputError(str(path), counts, "one kind of event", f"set source.event to one of {', '.join(rows)}")
-    chosen = rows.get(name or next(iter(rows), ""))
+    said = (name or next(iter(rows), "")).upper()
+    chosen = rows.get(said) or rows.get(said.removesuffix("A"))  # MARKTIMEA, as in the log
     if not chosen:
         held = f"events {', '.join(rows)}" if rows else "no event"
         expected = name or "MARKTIME, MARKnTIME or MARKnPVA messages"
         raise InputError(str(path), held, expected, "log them, or correct source.event and source.time_file")
     week, seconds = np.array(chosen).T
-    return np.unique(gps_time.unix_from_week(week, seconds))
+    times = np.unique(gps_time.unix_from_week(week, seconds))
+    if len(times) < len(chosen):
+        log.warning("%s: %d events at the time of another are passed over", path, len(chosen) - len(times))
+    if invalid:
+        log.warning("%s: %d events while the receiver's clock was not valid; their times may be wrong", path, invalid)
+    return times
 
 
 def burst(times: NDArray[np.int64], number: int, n_bursts: int, path: Path) -> NDArray[np.int64]:

@@ -173,7 +173,7 @@ LINE = (
 CHECK_SUMS = (b"5975c36e", b"2c437dd7", b"b318be1c", b"c62e00a5", b"56de3fcb")
 
 
-@pytest.mark.parametrize("end", [b"\r\n", b"\n"])
+@pytest.mark.parametrize("end", [b"\r\n", b"\n", b"\r\r\n", b"\r", b"\r\n\r\n", b"\n\n", b"\n  "])
 def test_line_ends_of_ascii_messages_do_not_matter(tmp_path, end):
     lines = [LINE.replace(b"{n}", b"%d" % n).replace(b"{crc}", crc) for n, crc in enumerate(CHECK_SUMS)]
     (tmp_path / "run.gps").write_bytes(end.join([*lines, b""]))

@@ -75,6 +75,19 @@ def test_events_of_a_receiver_are_lines(tmp_path, name):
     np.testing.assert_array_equal(times(scan, time_stamps="novatel", event=name), START_US + LINES)
 
 
+def test_events_that_were_logged_twice_or_without_a_valid_clock_are_told(tmp_path, caplog):
+    scan = scan_of(tmp_path)
+    events(tmp_path / "run-01.gps", [OF_WEEK_S], "MARKTIME")
+    log = (tmp_path / "run-01.gps").read_bytes()
+    (tmp_path / "run-01.gps").write_bytes(log + log)
+    np.testing.assert_array_equal(times(scan, time_stamps="novatel", event="marktimea"), START_US + LINES)
+    assert "run-01.gps: 5 events at the time of another are passed over" in caplog.text
+    fields = [f"{WEEK}", f"{OF_WEEK_S + 1:.6f}", "0.0", "0.0", "-18.0", "INVALID"]
+    (tmp_path / "run-01.gps").write_bytes(log + novatel_writer.ascii_("MARKTIME", WEEK, OF_WEEK_S, fields))
+    times(scan, time_stamps="novatel")
+    assert "1 events while the receiver's clock was not valid" in caplog.text
+
+
 def test_one_log_of_events_holds_a_burst_a_scan(tmp_path):
     first, second = scan_of(tmp_path), scan_of(tmp_path, "run-02")
     events(tmp_path / "drive.gps", [OF_WEEK_S, OF_WEEK_S + 60])
