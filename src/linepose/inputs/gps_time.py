@@ -161,4 +161,4 @@ def _total_s(start_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray
 
 
 def _day(unix_us: int) -> str:
-    return datetime.fromtimestamp(unix_us / 1e6, tz=UTC).strftime("%Y-%m-%d")
+    return str(np.datetime64(unix_us, "us").astype("datetime64[D]"))

@@ -94,6 +94,11 @@ def test_weeks_that_a_receiver_of_today_lost_are_told(caplog, unix_s, is_told):
     assert ("may have lost 1024 GPS weeks (2025-05-01); if it has" in caplog.text) == is_told
 
 
+def test_years_before_christ_have_a_name_in_messages(caplog):
+    gps_time.tell_lost_weeks(-250_000_000_000_000_000, "log.lcf")
+    assert "log.lcf: times of -5953-" in caplog.text
+
+
 def test_weeks_that_a_receiver_of_ten_bits_lost_are_told(caplog):
     gps_time.tell_lost_weeks(gps_time.GPS_EPOCH_US, "log.gps")
     assert "lost 1024 GPS weeks (1999-08-22) or 2048 GPS weeks (2019-04-07)" in caplog.text

@@ -65,6 +65,7 @@ class _Rows:
     sigmas: list[list[float]] = field(default_factory=list)
     without_fix: int = 0
     without_height: int = 0
+    nowhere: int = 0
     position_sigma: list[float] = field(default_factory=lambda: [np.nan] * 3)
     heading: float = np.nan
 
@@ -94,6 +95,8 @@ def _read_file(path: Path, section: NmeaSection) -> tuple[Poses, Covariances]:
     if rows.without_height:
         told = "%s: %d GGA without a height or the geoid's separation, which is added to it, are left out"
         log.warning(told, path, rows.without_height)
+    if rows.nowhere:
+        log.warning("%s: %d GGA whose latitude or longitude is none are left out", path, rows.nowhere)
     fix_us, fixes = _used(rows.fix_us, _table(rows.fixes), f"{path}, GGA")
     angles = np.hstack([_table(rows.attitudes), _table(rows.sigmas, 6)])
     attitude_us, attitudes = _used(rows.attitude_us, angles, f"{path}, PASHR")
@@ -146,12 +149,25 @@ def _add_fix(rows: _Rows, time_us: int, content: Any) -> None:
     if not content.gps_qual or not content.lat or not content.lon:
         rows.without_fix += 1
         return
+    latitude, longitude = _degrees(content.lat, content.lat_dir, "NS"), _degrees(content.lon, content.lon_dir, "EW")
+    if latitude is None or longitude is None:
+        rows.nowhere += 1
+        return
     height = _number(content.altitude) + _number(content.geo_sep)
     if np.isnan(height):
         rows.without_height += 1
         return
     rows.fix_us.append(time_us)
-    rows.fixes.append((content.latitude, content.longitude, height))
+    rows.fixes.append((latitude, longitude, height))
+
+
+def _degrees(text: str, direction: str, directions: str) -> float | None:
+    """Degrees of DDDMM.MMM and its direction, which is minus for the second; None of another text."""
+    match = re.fullmatch(r"(\d{1,3})([0-5]\d(?:\.\d*)?)", text, re.ASCII)
+    if match is None or direction not in tuple(directions):
+        return None
+    degrees = float(match[1]) + float(match[2]) / 60
+    return degrees if direction == directions[0] else -degrees
 
 
 def _number(value: Any) -> float:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from linepose.errors import InputError
 from linepose.inputs import gps_time
 from linepose.inputs.location_files import location_rows, location_unix_us
-from linepose.inputs.number_files import plain_float, plain_whole
+from linepose.inputs.number_files import check_microseconds, plain_float, plain_whole
 from linepose.inputs.observed_points import select_scans
 from linepose.inputs.patterns import in_any_case
 from linepose.inputs.scans.csv_times import read_times
@@ -44,9 +44,10 @@ def line_times_of(source: ScansSection) -> LineTimes:
 def first_time_us(source: ScansSection, folder: Path) -> int:
     """Unix time (us) of the first line of the first scan."""
     scan = next(iter(select_scans(folder, source.scans, ()).values()))
-    times, path, _ = _read(scan, source)
+    times, path, heading = _read(scan, source)
     if not len(times):
         raise InputError(str(path), "no time stamp", "one for each line of the scan", "restore the file")
+    check_microseconds(times[:1], path, first_row=heading + 1)
     return int(times[0])
 
 

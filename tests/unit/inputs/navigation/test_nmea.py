@@ -120,11 +120,40 @@ def test_day_of_the_scans_where_nothing_says_it(tmp_path):
     assert read_navigation(source, tmp_path).log.time_us[0] == MIDNIGHT_US + 36_000_000_000
 
 
+def test_scans_of_no_time_are_told_where_they_say_the_day(tmp_path):
+    (tmp_path / "a-times.csv").write_text("999999999999999999\n")
+    (tmp_path / "a.png").touch()
+    (tmp_path / "log.nmea").write_text("".join(drive()))
+    source = ScansSection(kind="scans", dataset="x", scans="*.png", navigation={"format": "nmea", "file": "log.nmea"})
+    with pytest.raises(InputError, match=r"a-times.csv, row 1, column 1: found time 999999999999999999"):
+        read_navigation(source, tmp_path)
+
+
 def test_heading_of_hdt_where_pashr_has_none(tmp_path):
     text = "".join(drive()).replace("$PASHR", sentence("GNHDT,77.0,T") + "$PASHR")
     assert np.rad2deg(read(tmp_path, text, date=DAY).log.euler_rad[0, 2]) == pytest.approx(30)
     parts = [gga(100), sentence("GNHDT,77.0,T"), pashr(100, heading=""), gga(101), pashr(101, heading="")]
     assert np.rad2deg(read(tmp_path, "".join(parts), date=DAY).log.euler_rad[0, 2]) == pytest.approx(77)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        (",S,", ",,"),
+        (",E,", ",N,"),
+        (
+            "33",
+            "33.5",
+        ),
+        ("15111", "1511X"),
+        ("3353", "3373"),
+    ],
+)
+def test_gga_of_no_place_are_left_out(tmp_path, caplog, right, wrong):
+    """A latitude without its direction is none, not 0."""
+    broken = gga(36_001.5).split("*")[0].replace(right, wrong, 1) + "\n"
+    assert len(read(tmp_path, "".join([*drive(), broken]), date=DAY).log.time_us) == 21
+    assert "log.nmea: 1 GGA whose latitude or longitude is none are left out" in caplog.text
 
 
 def test_what_is_left_out_is_counted(tmp_path, caplog):
