@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -10,17 +11,18 @@ import numpy as np
 import pandas as pd
 
 from linepose.errors import InputError, quoted
+from linepose.inputs.scans.scan_files import scan_size
 from linepose.survey.point_names import WHAT, point_name, point_names
 
 _CENTRE: Final = 0.5  # of the first pixel, counted from the picture's corner
 _NUMBERED: Final = re.compile(r"(?:#|(?:point|pt|p|id)[\s_#.:-]*)?(\d{1,9})", re.IGNORECASE)
 IDS: Final = ("group_id", "id", "point", "point_id", "point id")  # places that are known to hold names
-_INTERLEAVES: Final = {".bil", ".bip", ".bsq"}
+_ENDINGS: Final = {".bil", ".bip", ".bsq", ".hdr", ".raw", ".img"}  # within the name of a picture of a scan
 
 
 @dataclass(frozen=True)
 class Clicked:
-    """Text and place (x, y) of a label, from the corner of a picture of this name and width; `where` for messages.
+    """Text and place (x, y) of a label, from the corner of a picture of this name and size; `where` for messages.
 
     `given` are the other places that may hold the point's name: what each is called ("group_id"), and its text.
     """
@@ -32,6 +34,7 @@ class Clicked:
     width: int | None
     where: str
     given: tuple[tuple[str, str], ...] = ()
+    height: int | None = None
 
 
 def labels_of(
@@ -42,6 +45,7 @@ def labels_of(
     `point_id` is the place of the points' names, see `point_of`.
     """
     observation_of = _observations(scans)
+    lines_of = cache(lambda observation: _lines(scans[observation]))
     rows: dict[tuple[int, int | str], tuple[float, float]] = {}
     for one in clicked:
         observation = observation_of.get(_name(one.picture))
@@ -50,6 +54,10 @@ def labels_of(
             raise InputError(one.where, f"picture {one.picture}", expected, "rename the picture, or remove its labels")
         if one.width not in (None, n_pixels):
             found, expected = f"a picture {one.width} pixels wide", f"{n_pixels}, as camera.n_pixels says"
+            raise InputError(one.where, found, expected, "label the scan's own pixels, neither turned nor scaled")
+        lines = None if one.height is None else lines_of(observation)
+        if lines not in (None, one.height):
+            found, expected = f"a picture of {one.height} lines", f"{lines}, as its scan has"
             raise InputError(one.where, found, expected, "label the scan's own pixels, neither turned nor scaled")
         if not (np.isfinite(one.x) and np.isfinite(one.y)):
             raise InputError(one.where, f"place {one.x}, {one.y}", "two numbers", "remove the label")
@@ -64,6 +72,14 @@ def labels_of(
     )
     table["point"] = point_names(table["point"])
     return table.sort_values(["observation", "point"], ignore_index=True)
+
+
+def _lines(scan: Path) -> int | None:
+    """Lines of a scan; None where it cannot be read, which is told with the scan."""
+    try:
+        return scan_size(scan)[0]
+    except InputError:
+        return None
 
 
 def _observations(scans: Mapping[int, Path]) -> dict[str, int]:
@@ -109,6 +125,6 @@ def _named(text: str) -> int | str | None:
 
 
 def _name(file: str) -> str:
-    """Name of a scan or picture without folders and endings; `run` of run.hdr, run.bil.hdr and run.png."""
+    """Name of a scan or picture without folders and endings; `run` of run.hdr, run.bil.hdr, run.png, run.hdr.png."""
     stem = Path(file.replace("\\", "/")).stem
-    return Path(stem).stem if Path(stem).suffix.lower() in _INTERLEAVES else stem
+    return Path(stem).stem if Path(stem).suffix.lower() in _ENDINGS else stem

@@ -36,8 +36,9 @@ def read(path: Path, content: Any) -> list[Clicked]:
         rows = _keypoints(one["keypoints"], names.get(str(one.get("category_id"))), where)
         seen = [row for row in rows if row[3] > 0]
         unlabelled += len(rows) - len(seen)
-        width = image.get("width") if isinstance(image.get("width"), int) else None
-        clicked += [Clicked(name, x, y, image["file_name"], width, f"{where}, {name}") for name, x, y, _ in seen]
+        width, height = (image.get(one) if isinstance(image.get(one), int) else None for one in ("width", "height"))
+        picture = image["file_name"]
+        clicked += [Clicked(name, x, y, picture, width, f"{where}, {name}", height=height) for name, x, y, _ in seen]
     tell_passed_over(path, {"keypoints of visibility 0": unlabelled, "annotations without keypoints": others})
     return clicked
 

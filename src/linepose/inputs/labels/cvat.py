@@ -30,7 +30,7 @@ def read(path: Path, _: object = None) -> list[Clicked]:
         expected, remedy = "CVAT for images 1.1: <image>", "export the task in that format"
         raise InputError(str(path), "an element <track>, as of a video", expected, remedy)
     shapes = [(image, shape) for image in root.iter("image") for shape in _shapes(image)]
-    seen = [(image, shape) for image, shape in shapes if shape.get("outside") != "1"]
+    seen = [(image, shape) for image, shape in shapes if not _is_outside(shape)]
     points = [(image, shape) for image, shape in seen if shape.tag == "points"]
     outside, others = len(shapes) - len(seen), len(seen) - len(points)
     tell_passed_over(path, {"shapes outside their pictures": outside, "shapes that are no points": others})
@@ -43,23 +43,28 @@ def read(path: Path, _: object = None) -> list[Clicked]:
 def _shapes(image: ElementTree.Element) -> Iterator[ElementTree.Element]:
     """Shapes of one picture; of a skeleton its points, or the whole of it where that is outside."""
     for shape in image:
-        if shape.tag == "skeleton" and shape.get("outside") != "1":
+        if shape.tag == "skeleton" and not _is_outside(shape):
             yield from _shapes(shape)
         elif shape.tag in {"points", "skeleton", *_HELPERS}:
             yield shape
+
+
+def _is_outside(shape: ElementTree.Element) -> bool:
+    return shape.get("outside", "0").strip().lower() in {"1", "true"}
 
 
 def _point(element: ElementTree.Element, where: str, image: ElementTree.Element) -> Clicked:
     places = element.get("points", "").split(";")
     try:
         x, y = (plain_float(word) for word in places[0].split(","))
-        width = plain_whole(image.attrib["width"]) if "width" in image.attrib else None
+        width, height = (plain_whole(image.attrib[one]) if one in image.attrib else None for one in ("width", "height"))
     except ValueError:
         raise InputError(where, f"points={element.get('points')!r}", "x,y", "draw the point anew") from None
     if len(places) > 1:
         remedy = "draw each point as a shape of its own"
         raise InputError(where, f"{len(places)} places in one shape", "one", remedy)
-    return Clicked(element.get("label", ""), x, y, image.get("name", ""), width, where, _attributes(element))
+    given = _attributes(element)
+    return Clicked(element.get("label", ""), x, y, image.get("name", ""), width, where, given, height)
 
 
 def _attributes(element: ElementTree.Element) -> tuple[tuple[str, str], ...]:

@@ -56,8 +56,9 @@ def _of_minimum(task: dict[str, Any]) -> Iterator[dict[str, Any]]:
 def _regions(results: list[dict[str, Any]]) -> list[list[dict[str, Any]]]:
     """Results by region: those that have one id."""
     regions: dict[Any, list[dict[str, Any]]] = {}
+    drawn = {str(result.get("id", number)) for number, result in enumerate(results) if "original_width" in result}
     for number, result in enumerate(results):
-        if "original_width" in result:
+        if str(result.get("id", number)) in drawn:
             regions.setdefault(str(result.get("id", number)), []).append(result)
     return list(regions.values())
 
@@ -71,7 +72,8 @@ def _point(region: list[dict[str, Any]], picture: str, where: str) -> Clicked:
     values = [one["value"] for one in region if isinstance(one.get("value"), dict)]
     try:
         place = next(value for value in values if "x" in value)
-        width, height = (int(region[0][f"original_{side}"]) for side in ("width", "height"))
+        sized = next(one for one in region if "original_width" in one)
+        width, height = (int(sized[f"original_{side}"]) for side in ("width", "height"))
         x, y = float(place["x"]) / _PER_CENT * width, float(place["y"]) / _PER_CENT * height
     except (StopIteration, KeyError, TypeError, ValueError, OverflowError):
         raise InputError(where, "no place", "x and y in percent, original_width and _height", "draw it anew") from None
@@ -86,7 +88,7 @@ def _point(region: list[dict[str, Any]], picture: str, where: str) -> Clicked:
         for key in _VALUES
         for text in _texts(one["value"].get(key))
     ]
-    return Clicked(next(iter(labels), ""), x, y, picture, width, where, tuple(given))
+    return Clicked(next(iter(labels), ""), x, y, picture, width, where, tuple(given), height)
 
 
 def _texts(value: Any) -> list[str]:
@@ -97,8 +99,10 @@ def _picture(task: dict[str, Any]) -> str:
     """Name of a task's picture, without what an upload has put before it."""
     data = task.get("data") if isinstance(task.get("data"), dict) else task
     named = [task.get("file_upload"), *data.values()]  # type: ignore[union-attr]
-    texts = [text for text in named if isinstance(text, str) and Path(text).suffix]
-    name = Path(unquote(texts[0] if texts else "").rsplit("?d=", 1)[-1].replace("\\", "/")).name
+    texts = [text for text in named if isinstance(text, str) and "." in text]
+    address = texts[0].rsplit("?d=", 1)[-1] if texts else ""
+    address = address.partition("?")[0] if "://" in address else address  # without the keys of a store
+    name = Path(unquote(address).replace("\\", "/")).name
     return _UPLOADED.sub("", name, count=1) if _UPLOADED.match(name) else name
 
 

@@ -24,7 +24,7 @@ def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
     if not path.is_file():
         raise InputError(str(path), "no such file", "approximate labels", "restore it, or set source.points: detection")
     try:
-        table = pd.read_csv(path, dtype={"point": str})
+        table = pd.read_csv(path, dtype={"point": str}, skipinitialspace=True)
     except (ValueError, OSError, OverflowError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "CSV with a heading", "mend the file") from None

@@ -105,7 +105,7 @@ def test_cvat_points_outside_the_picture_are_no_labels(tmp_path, caplog, skeleto
         f'<skeleton label="board" source="manual" {skeleton}>'
         '<points label="0" outside="0" occluded="0" points="10.50,20.50"></points>'
         '<points label="1" outside="1" occluded="0" points="99.00,99.00"></points></skeleton>'
-        '<skeleton label="board" outside="1"><points label="2" outside="0" points="1,2"></points></skeleton>'
+        '<skeleton label="board" outside="true"><points label="2" outside="0" points="1,2"></points></skeleton>'
         '<points label="4" outside="1" points="3,4"/><box label="board" xtl="1"/>'
     )
     cvat(tmp_path / "a.xml", points)
@@ -221,3 +221,10 @@ def test_rows_of_more_cells_than_the_heading_are_not_shifted(tmp_path):
     (tmp_path / "labels.csv").write_text("observation,point,u_px,line\n3,1,7,20,30\n3,1,8,21,31\n")
     with pytest.raises(InputError, match=r"labels.csv: found rows of more cells than the heading"):
         read_point_labels(tmp_path, "labels.csv", SCANS, 640)
+
+
+def test_blanks_beside_commas_and_pictures_with_the_scans_whole_name(tmp_path):
+    (tmp_path / "labels.csv").write_text("observation, point, line, u_px\n3, gate, 30, 20\n")
+    assert read(tmp_path, "labels.csv").to_numpy().tolist() == [[3, "gate", 20, 30]]
+    labelme(tmp_path, "run-01", [shape("0", 10.5, 20.5)], imagePath="run-01.hdr.png")
+    assert read(tmp_path, "*.json").to_numpy().tolist() == [[1, 0, 10, 20]]

@@ -5,6 +5,7 @@ from copy import deepcopy
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from linepose.errors import InputError
 from linepose.inputs.labels import read_point_labels
@@ -153,3 +154,48 @@ def test_what_cannot_be_used_is_one_line(tmp_path, content, keys, value, told):
 def test_json_of_another_kind(tmp_path, content):
     with pytest.raises(InputError, match=r"JSON of another kind, expected that of one of LabelMe, COCO k"):
         read(tmp_path, content)
+
+
+def cvat(folder, height):
+    image = f'<image name="run-01.png" width="640" height="{height}"><points label="0" points="10.5,20.5"/></image>'
+    (folder / "labels.xml").write_text(f"<annotations>{image}</annotations>")
+
+
+def labelme(folder, height):
+    shape = {"label": "0", "points": [[10.5, 20.5]], "shape_type": "point"}
+    content = {"shapes": [shape], "imagePath": "run-01.png", "imageWidth": 640, "imageHeight": height}
+    (folder / "labels.json").write_text(json.dumps(content))
+
+
+def coco(folder, height):
+    content = deepcopy(COCO) | {"annotations": COCO["annotations"][:1]}
+    content["images"][0]["height"] = height
+    (folder / "labels.json").write_text(json.dumps(content))
+
+
+def studio(folder, height):
+    value = {"x": 100 * 10.5 / 640, "y": 100 * 20.5 / height, "keypointlabels": ["0"]}
+    result = {"id": "r", "from_name": "kp", "type": "keypointlabels", "value": value}
+    task = {"data": {"image": "https://store/a/run-01.png?key=a.b"}, "annotations": [{"result": [result]}]}
+    result |= {"original_width": 640, "original_height": height}
+    (folder / "labels.json").write_text(json.dumps([task]))
+
+
+@pytest.mark.parametrize("write", [cvat, labelme, coco, studio])
+def test_pictures_of_another_height_than_their_scans_are_refused(tmp_path, write):
+    """As of pictures that were scaled along the track alone."""
+    scans = {1: tmp_path / "run-01.png"}
+    Image.new("I;16", (640, 400)).save(scans[1])
+    write(tmp_path, 400)
+    (labels,) = (path.name for path in tmp_path.glob("labels.*"))
+    assert read_point_labels(tmp_path, labels, scans, 640).to_numpy().tolist()[0][2:] == pytest.approx([10, 20])
+    write(tmp_path, 200)
+    with pytest.raises(InputError, match=r"found a picture of 200 lines, expected 400, as its scan has"):
+        read_point_labels(tmp_path, labels, scans, 640)
+
+
+def test_a_control_beside_a_region_needs_no_size_of_its_own(tmp_path):
+    content = deepcopy(STUDIO[1:])
+    del content[0]["annotations"][0]["result"][2]["original_width"]
+    content[0]["annotations"][0]["result"].pop(0)
+    assert read(tmp_path, content, "mark")["point"].tolist() == ["gate"]
