@@ -20,7 +20,7 @@ from linepose.errors import InputError, printable
 from linepose.inputs.navigation.format import GeodeticSection
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S, positions_between
 from linepose.inputs.navigation.record import Poses, check_increasing
-from linepose.inputs.navigation.usable_rows import usable_rows
+from linepose.inputs.navigation.usable_rows import placed, usable_rows
 
 Stamps = NDArray[np.int64]
 
@@ -113,6 +113,8 @@ def autopilot_poses(flight: FlightLog, path: Path, maximum_gap_s: float) -> Pose
     started_us = int(np.median(flight.unix_us - flight.gps_us))
     log.warning("%s: times are those of the GPS messages (%s), which come late by up to 0.2 s", path, flight.names[2])
     fix_us, geodetic = _used(flight.fix_us, flight.geodetic, f"{path}, {flight.names[1]}")
+    kept = placed(geodetic, f"{path}, {flight.names[1]}")
+    fix_us, geodetic = fix_us[kept], geodetic[kept]
     attitude_us, euler = _used(flight.attitude_us, flight.euler_rad, f"{path}, {flight.names[0]}")
     place = f"{path}, {flight.names[0]}"
     between = positions_between(attitude_us, fix_us, geodetic, maximum_gap_s, place)

@@ -27,7 +27,7 @@ from linepose.inputs.navigation.record import (
     check_increasing,
     geodetic_record,
 )
-from linepose.inputs.navigation.usable_rows import usable_rows
+from linepose.inputs.navigation.usable_rows import placed, usable_rows
 from linepose.inputs.nmea import Sentence, has_date, sentences
 
 _HEAD_BYTES: Final = 4096
@@ -98,6 +98,8 @@ def _read_file(path: Path, section: NmeaSection) -> tuple[Poses, Covariances]:
     if rows.nowhere:
         log.warning("%s: %d GGA whose latitude or longitude is none are left out", path, rows.nowhere)
     fix_us, fixes = _used(rows.fix_us, _table(rows.fixes), f"{path}, GGA")
+    kept = placed(fixes, f"{path}, GGA")
+    fix_us, fixes = fix_us[kept], fixes[kept]
     angles = np.hstack([_table(rows.attitudes), _table(rows.sigmas, 6)])
     attitude_us, attitudes = _used(rows.attitude_us, angles, f"{path}, PASHR")
     if len(fix_us) < 2:

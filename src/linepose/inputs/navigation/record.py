@@ -24,6 +24,7 @@ from linepose.inputs.local_frame import (
     utm_crs,
 )
 from linepose.inputs.navigation.format import GeodeticSection
+from linepose.inputs.navigation.usable_rows import placed
 from linepose.survey.corrected import corrected_covariances, corrected_poses
 from linepose.survey.navigation import NavigationCovariances
 from linepose.survey.navigation_log import NavigationLog
@@ -99,7 +100,7 @@ def geodetic_record(
     """
     for one in poses:
         check_geodetic(one.position, one.place)
-    both = _joined_poses(poses)
+    both = _joined_poses([_placed(one) for one in poses])
     frame = _frame(section, both.position[0])
     position, euler = _in_frame(frame, both)
     if not np.all(np.isfinite(position)):
@@ -206,6 +207,14 @@ def _joined_poses(parts: Sequence[Poses]) -> Poses:
     if len(joined.time_us) < _FEWEST:
         raise InputError(joined.place, f"{len(joined.time_us)} poses", "two or more", "restore the log")
     return joined
+
+
+def _placed(part: Poses) -> Poses:
+    """The poses without those of a device that had no fix yet; how many is told."""
+    kept = placed(part.position, part.place)
+    if np.all(kept):
+        return part
+    return replace(part, time_us=part.time_us[kept], position=part.position[kept], euler_rad=part.euler_rad[kept])
 
 
 def _in_order(part: Poses) -> Poses:

@@ -19,7 +19,7 @@ from linepose.inputs.navigation.rosbag_axes import (
 )
 from linepose.inputs.navigation.rosbag_messages import messages
 from linepose.inputs.navigation.rosbag_vendors import FIX_KINDS, IMU_KINDS, SBG, attitude_of, fix_of, kinds_of
-from linepose.inputs.navigation.usable_rows import usable_rows
+from linepose.inputs.navigation.usable_rows import placed, usable_rows
 
 log = logging.getLogger(__name__)
 
@@ -75,6 +75,7 @@ def _fixes(
         log.warning("%s: %d messages without a fix are left out", place, without)
     times, places = np.array(fix_us, dtype=np.int64), np.array(geodetic, dtype=float).reshape(-1, 3)
     rows = usable_rows(times, places, place)
+    rows = rows[placed(places[rows], place)]
     if len(rows) < 2:
         raise InputError(place, f"{len(rows)} messages with a fix", "two or more", "record the whole drive")
     check_increasing(times[rows], place)

@@ -27,6 +27,7 @@ from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts
 from linepose.inputs.navigation.table_file import read_columns
 from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad, with_orientation
 from linepose.inputs.navigation.table_times import OF_TEXT
+from linepose.inputs.navigation.usable_rows import placed
 from linepose.inputs.patterns import Files
 from linepose.settings import Settings
 
@@ -210,7 +211,11 @@ def _fixes(table: Columns, section: TableSection) -> tuple[NDArray[np.int64], Fl
     if columns.sigma_position is not None:
         sigma = table.numbers(columns.sigma_position)
         sigma = sigma[:, _ENU_SIGMAS] if section.coordinates == "enu" else sigma
-    return time_us, _position(table, section, columns), sigma
+    position = _position(table, section, columns)
+    if section.coordinates != "geodetic":
+        return time_us, position, sigma
+    kept = placed(position, str(table.path))
+    return time_us[kept], position[kept], sigma[kept]
 
 
 def _whole_rows(table: Columns, section: TableSection) -> tuple[Columns, ColumnsSection]:

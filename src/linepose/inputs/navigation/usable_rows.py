@@ -31,3 +31,16 @@ def usable_rows(time_us: NDArray[np.int64], values: Floats, place: str) -> NDArr
     if faults:
         log.warning("%s: %s", place, "; ".join(faults))
     return np.asarray(order[~repeated])
+
+
+def placed(geodetic: Floats, place: str) -> NDArray[np.bool_]:
+    """Which of latitude, longitude (deg) and height (K, 3) are not 0, 0, as devices write them without a fix; counted.
+
+    All, where there are no others.
+    """
+    known: NDArray[np.bool_] = np.any(geodetic[:, :2] != 0, axis=1)
+    if known.all() or not known.any():
+        return np.ones(len(geodetic), dtype=bool)
+    told = "%s: %d of %d records at latitude 0, longitude 0, as without a fix, are left out"
+    log.warning(told, place, np.count_nonzero(~known), len(known))
+    return known

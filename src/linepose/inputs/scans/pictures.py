@@ -23,6 +23,7 @@ _TIFF: Final = {".tif", ".tiff"}
 _JPEG: Final = {".jpg", ".jpeg"}
 _BYTE_MODES: Final = {"L", "RGB", "P", "1"}  # Pillow's of at most 8 bits a value
 _MOST_VALUES: Final = 2_000_000_000  # of all bands: 4 GB of 16 bit
+_MOST_COMPRESSED: Final = 10_000  # bytes of values in one of the file: what is said to hold more has no values
 _INVERTED, _PALETTE, _YCBCR = 0, 3, 6  # TIFF's photometric interpretations
 _BANDS: Final = {"S", "C"}  # tifffile's axes of the values of one place
 _CHUNK_LINES: Final = 1024
@@ -161,7 +162,9 @@ def _tiff_mean(path: Path) -> NDArray[np.float32]:
         if series.size > _MOST_VALUES:
             found, remedy = f"{series.size} values", "cut the scan into views of the board"
             raise InputError(str(path), found, f"at most {_MOST_VALUES}", remedy)
-        if any(offset + count > file.filehandle.size for one in series.pages for offset, count in _segments(one)):
+        segments = [segment for one in series.pages for segment in _segments(one)]
+        beyond = any(offset + count > file.filehandle.size for offset, count in segments)
+        if beyond or series.nbytes > _MOST_COMPRESSED * sum(count for _, count in segments):
             raise InputError(str(path), "a file that is truncated", "a whole TIFF file", "restore the scan")
         if page.photometric == _YCBCR or not _decodable(page):
             return _pillow_mean(path)

@@ -1,4 +1,5 @@
 import datetime
+import re
 from functools import reduce
 
 import numpy as np
@@ -154,6 +155,15 @@ def test_gga_of_no_place_are_left_out(tmp_path, caplog, right, wrong):
     broken = gga(36_001.5).split("*")[0].replace(right, wrong, 1) + "\n"
     assert len(read(tmp_path, "".join([*drive(), broken]), date=DAY).log.time_us) == 21
     assert "log.nmea: 1 GGA whose latitude or longitude is none are left out" in caplog.text
+
+
+def test_fixes_at_0_0_are_none(tmp_path, caplog):
+    """As of receivers that say a fix too early: the frame's origin would lie in the Gulf of Guinea."""
+    early = re.sub(r",[\d.]+,S,[\d.]+,E", ",0000.00,N,00000.00,E", gga(35_999).split("*")[0]) + "\n"
+    record = read(tmp_path, early + pashr(35_999) + "".join(drive()), date=DAY)
+    assert record.origin[0] == pytest.approx(ORIGIN[0])
+    assert len(record.log.time_us) == 21
+    assert "log.nmea, GGA: 1 of 4 records at latitude 0, longitude 0, as without a fix, are left out" in caplog.text
 
 
 def test_what_is_left_out_is_counted(tmp_path, caplog):

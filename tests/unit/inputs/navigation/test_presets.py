@@ -241,6 +241,16 @@ def test_signs_of_angles_between_0_and_minus_1_degree(tmp_path):
     np.testing.assert_allclose(record.origin, (-0.8892, -0.1937, 42.5), rtol=0, atol=1e-9)
 
 
+def test_poses_at_0_0_are_left_out(tmp_path, caplog):
+    heading, first, second = OXTS.splitlines()
+    rows = [heading, first.replace("-33.8892,151.1937,42.5", "0.0,0.0,0.0").replace("218.25", "218.15"), first, second]
+    (tmp_path / "log.txt").write_text("\n".join(rows) + "\n")
+    record = read_navigation(TableSection(format="table", file="log.txt", preset="oxts"), tmp_path)
+    np.testing.assert_allclose(record.origin, ORIGIN)
+    assert len(record.log.time_us) == 2
+    assert "log.txt: 1 of 3 records at latitude 0, longitude 0" in caplog.text
+
+
 def test_quaternions_of_zeros_are_left_out(tmp_path, caplog):
     (tmp_path / "log.txt").write_text("1700000000.15 0 0 0 0 0 0 0\n" + TUM)
     record = read_navigation(TableSection(format="table", file="log.txt", preset="tum"), tmp_path)

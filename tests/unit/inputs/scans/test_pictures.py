@@ -92,10 +92,20 @@ def _truncated(path, cube):
     path.write_bytes(path.read_bytes()[:-100])
 
 
+def _of_nothing(path, _):
+    """A picture that is said to have 0.8 GB of values, and has 16 bytes: tifffile fills them with 0."""
+    tifffile.imwrite(path, np.zeros((2, 4), np.uint16), rowsperstrip=2)
+    with tifffile.TiffFile(path, mode="r+b") as file:
+        tags = file.pages[0].tags
+        for name, value in (("ImageWidth", 20_000), ("ImageLength", 20_000), ("RowsPerStrip", 20_000)):
+            tags[name].overwrite(value)
+
+
 @pytest.mark.parametrize(
     ("write", "told"),
     [
         (_truncated, "truncated"),
+        (_of_nothing, "truncated"),
         (lambda path, cube: tifffile.imwrite(path, cube[None].repeat(4, 0), photometric="rgb"), "found 4 pictures"),
         (
             lambda path, cube: tifffile.imwrite(
