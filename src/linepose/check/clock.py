@@ -12,14 +12,15 @@ Times = NDArray[np.int64]
 
 _SUBJECT: Final = "time"
 _LOST_WEEKS_S: Final = 619_315_200
+_EPOCHS_S: Final = (315_964_800, 315_964_782)  # from 1970 to 1980, without and with 18 leap seconds
 _NAMED_OFFSETS_S: Final = (
     (18, "GPS time against UTC (18 leap seconds since 2017)"),
     (17, "GPS time against UTC (17 leap seconds, 2015 to 2016)"),
     (_LOST_WEEKS_S, "1024 GPS weeks, which a receiver lost"),
     (37, "TAI against UTC"),
     (19, "TAI against GPS time"),
-    (315_964_800, "the GPS epoch of 1980 against that of 1970"),
-    (315_964_782, "the GPS epoch and 18 leap seconds"),
+    (_EPOCHS_S[0], "the GPS epoch of 1980 against that of 1970"),
+    (_EPOCHS_S[1], "the GPS epoch and 18 leap seconds"),
     *((hours * 3600, f"a time zone of {hours} h") for hours in range(1, 15)),
     (86_400, "a day"),
 )
@@ -28,10 +29,17 @@ _HEADER_TOLERANCE_S: Final = 5.0  # headers say whole seconds, and a recorder st
 _WHOLE_TOLERANCE_S: Final = 2.0
 
 
-def overlap_findings(time_us: Times, navigation_us: Times, what: str, offset_s: float | None = None) -> list[Finding]:
+def overlap_findings(
+    time_us: Times,
+    navigation_us: Times,
+    what: str,
+    offset_s: float | None = None,
+    of_epoch: tuple[str, str] = ("", ""),
+) -> list[Finding]:
     """Whether times of points (P,) lie within those of the navigation (K,), increasing; `what` names the latter.
 
-    `offset_s` is source.time_offset_s, None where the source has no such key.
+    `offset_s` is source.time_offset_s, None where the source has no such key. `of_epoch` are the keys that mend times
+    since 1980 which were read as since 1970, of the camera and of the navigation; empty where there are none.
     """
     start, end = navigation_us[0], navigation_us[-1]
     outside = (time_us < start) | (time_us > end)
@@ -48,14 +56,15 @@ def overlap_findings(time_us: Times, navigation_us: Times, what: str, offset_s: 
         ]
     earliest, latest = (start - time_us.min()) / 1e6, (end - time_us.max()) / 1e6
     found = f"no point lies within the {what}: points from {_told(time_us.min())}, {what} from {_told(start)}"
-    names = [
-        f"{_remedy(sign * seconds, offset_s)} ({name})"
-        for seconds, name in _NAMED_OFFSETS_S
-        for sign in (1, -1)
-        if earliest <= sign * seconds <= latest
-    ]
+    names: dict[str, str] = {}
+    for seconds, name in _NAMED_OFFSETS_S:
+        for sign, epoch_key in zip((1, -1), of_epoch, strict=True):
+            if earliest <= sign * seconds <= latest:
+                by_key = f"set {epoch_key}" if epoch_key and seconds in _EPOCHS_S else ""
+                names.setdefault(by_key or _remedy(sign * seconds, offset_s), name)
     if names:
-        return [error(_SUBJECT, found, "; or ".join(names[:3]))]
+        told = [f"{remedy} ({name})" for remedy, name in names.items()]
+        return [error(_SUBJECT, found, "; or ".join(told[:3]))]
     key = "" if offset_s is None else " (source.time_offset_s)"
     advice = f"move the camera's clock{key} by {earliest:.1f} to {latest:.1f} s, or bring the log of that day"
     return [error(_SUBJECT, found, advice if earliest <= latest else "bring the log that covers the whole survey")]

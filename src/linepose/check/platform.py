@@ -25,7 +25,7 @@ from linepose.check.prediction import predict
 from linepose.check.recorder import Recorder
 from linepose.check.scans import scan_findings
 from linepose.check.target import target_findings
-from linepose.check.told import readers_warnings
+from linepose.check.told import agreeing, readers_warnings
 from linepose.check.views import view_findings
 from linepose.config.platform import Platform, load_platform, platform_faults
 from linepose.config.project import Project
@@ -46,6 +46,7 @@ from linepose.survey.navigation_log import NavigationLog
 from linepose.survey.observations import Survey, check_determined, survey_from_table, table_from_survey
 
 _COVARIANCE_SIZE: Final = 12
+_SINCE_AN_EPOCH: Final = {"csv", "headwall"}  # of source.time_stamps: numbers that count from 1970 or 1980
 Read = TypeVar("Read")
 
 
@@ -97,7 +98,7 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
         return CheckReport(platform, (*findings, of_fault("data set", fault)))
     with readers_warnings() as told:
         more, points, observations = recorded_findings(loaded, platform, root)
-    findings += [*more, *told]
+    findings += [*more, *agreeing(told, more)]
     faulty = any(finding.level == Level.ERROR for finding in findings)
     if settings.flight is not None and points is None and observations is None and not faulty:
         more, sigmas = flight_findings(settings)
@@ -230,7 +231,7 @@ def _navigation_findings(
         time_us = points["time_us"].to_numpy()
         offset_s = settings.source.time_offset_s if isinstance(settings.source, ScansSection) else None
         if log is not None:
-            findings += clock.overlap_findings(time_us, log.time_us, "navigation log", offset_s)
+            findings += clock.overlap_findings(time_us, log.time_us, "navigation log", offset_s, _epoch_keys(settings))
         if reported is not None:
             about = "covariance", "navigation.maximum_gap_s"
             within = clock.overlap_findings(time_us, reported.time_us, "covariances", offset_s)
@@ -240,6 +241,17 @@ def _navigation_findings(
             gaps = clock.gap_findings(time_us, reported.time_us, navigation.maximum_gap_s, *about)
             findings += within if within[0].level == Level.ERROR and gaps[0].level == Level.ERROR else gaps
     return findings, Recorded(points, log, reported)
+
+
+def _epoch_keys(settings: Platform) -> tuple[str, str]:
+    """The keys that say that times count from 1980, of camera and navigation; empty where it has none, or is so set."""
+    source = settings.source
+    if not isinstance(source, ScansSection):
+        return "", ""
+    scale = getattr(source.navigation, "time_scale", None)
+    of_log = "source.navigation.time_scale: gps" if scale == "unix" else ""
+    counts = source.time_scale != "gps" and source.time_stamps in _SINCE_AN_EPOCH
+    return "source.time_scale: gps" if counts else "", of_log
 
 
 def _has_log(settings: Platform) -> bool:

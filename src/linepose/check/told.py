@@ -1,12 +1,13 @@
 """What readers warn of while a platform is checked, as findings: nothing that they pass over goes untold."""
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final
 
-from linepose.check.finding import Finding, warning
+from linepose.check.finding import Finding, Level, warning
 
+_WEEKS: Final = "1024 GPS weeks"
 _ROOM: Final = "linepose.inputs"
 _SUBJECTS: Final = {"scans": "scans", "navigation": "navigation log", "labels": "labels", "targets": "targets"}
 
@@ -35,6 +36,14 @@ def readers_warnings() -> Iterator[list[Finding]]:
         logger.setLevel(level)
         logger.propagate = passes_on
         findings += _findings(collector.records)
+
+
+def agreeing(told: Sequence[Finding], findings: Sequence[Finding]) -> list[Finding]:
+    """What was told, without a guess of lost GPS weeks where something else explains an error of the clocks."""
+    clocks = [one for one in findings if one.subject == "time" and one.level == Level.ERROR and "(" in one.advice]
+    if not clocks or any(_WEEKS in one.advice for one in clocks):
+        return list(told)
+    return [one for one in told if f"may have lost {_WEEKS}" not in one.found]
 
 
 def _findings(records: dict[str, logging.LogRecord]) -> list[Finding]:

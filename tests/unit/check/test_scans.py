@@ -16,6 +16,7 @@ from linepose.check.scans import scan_findings
 from linepose.config.new_platform import NewPlatform, write_platform
 from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
+from linepose.inputs.gps_time import gps_from_unix
 from unit.check.conftest import CONFIG
 from unit.recorded_files import write_scan_files
 
@@ -200,6 +201,36 @@ def test_shift_between_the_clocks_is_named_with_its_remedy(shift_s, advice):
     for offset_s in corrected:  # to the letter
         (followed,) = overlap_findings(times + round(offset_s * 1e6), log_us, "navigation log", offset_s)
         assert followed.level == Level.OK
+
+
+@pytest.mark.parametrize(
+    ("shift_s", "key"), [(-315_964_782, "source.time_scale: gps"), (315_964_782, "source.navigation.time_scale: gps")]
+)
+def test_times_since_1980_read_as_since_1970_are_told_by_their_key(shift_s, key):
+    log_us = 1_700_000_000_000_000 + 100_000 * np.arange(100)
+    keys = "source.time_scale: gps", "source.navigation.time_scale: gps"
+    (told,) = overlap_findings(log_us[20:30] + shift_s * 1_000_000, log_us, "navigation log", 0.0, keys)
+    assert told.advice == f"set {key} (the GPS epoch and 18 leap seconds)"
+
+
+def test_log_in_gps_seconds_read_as_unix_time_is_mended_by_the_key_alone(scans):
+    """To the letter; and no other finding guesses that a receiver has lost weeks."""
+    log = pd.read_parquet(scans / "data" / "mine" / "navigation.parquet")
+    gps_s = gps_from_unix(log["time_us"].to_numpy()) / 1e6
+    log.assign(t=gps_s).to_csv(scans / "data" / "mine" / "log.csv", index=False)
+    columns = {
+        "time": "t",
+        "position": ["north_m", "east_m", "down_m"],
+        "attitude": ["roll_rad", "pitch_rad", "yaw_rad"],
+    }
+    navigation = {"format": "table", "file": "log.csv", "columns": columns, "time_unit": "s"}
+    settings(scans, source={"navigation": navigation, "covariances": "covariances.csv"})
+    report = check_platform("mine", scans)
+    (told,) = [one for one in report.of(Level.ERROR) if one.subject == "time" and "navigation log" in one.found]
+    assert told.advice.startswith("set source.navigation.time_scale: gps (the GPS epoch")
+    assert not [one for one in report.findings if "may have lost 1024" in one.found]
+    settings(scans, source={"navigation": navigation | {"time_scale": "gps"}})
+    assert check_platform("mine", scans).level < Level.ERROR
 
 
 def test_labelled_views_have_their_column_named_for_a_shift():
