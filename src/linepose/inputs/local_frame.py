@@ -23,6 +23,7 @@ from linepose.tables import optional_floats, texts
 
 GEODETIC: Final = "EPSG:4979"  # WGS 84: latitude, longitude (deg), ellipsoidal height (m)
 
+_LARGEST_SCALE_ERROR: Final = 0.03  # of a system's lengths: polar stereographic ones reach 0.027
 _MARGIN_DEG: Final = 3.0  # around the area that a projected system is made for
 
 MAP_FRAME: Final = pa.schema([*texts("crs"), *optional_floats("latitude_deg", "longitude_deg", "height_m")])
@@ -61,10 +62,13 @@ def projected_frame(crs: str) -> LocalFrame:
 
 
 def check_is_near(frame: LocalFrame, latitude_deg: float, longitude_deg: float, place: str) -> None:
-    """Raise InputError where a projected CRS is made for another part of the Earth than this position."""
+    """Raise InputError where a projected CRS is made for another part of the Earth than this position.
+
+    So does one whose metres are none there, such as Web Mercator's.
+    """
     known = _projected_crs(frame.crs)
     area = None if known is None else known.area_of_use
-    if area is None:
+    if known is None or area is None:
         return
     east_of_west = (longitude_deg - area.west + _MARGIN_DEG) % 360.0
     width = area.east - area.west + (360.0 if area.east < area.west else 0.0) + 2 * _MARGIN_DEG
@@ -73,6 +77,19 @@ def check_is_near(frame: LocalFrame, latitude_deg: float, longitude_deg: float, 
             place,
             f"{frame.crs}, made for {area.name}, with positions at {latitude_deg:.2f}, {longitude_deg:.2f} deg",
             f"a system of the place, such as {utm_crs(latitude_deg, longitude_deg)}",
+            "correct or remove the key",
+        )
+    _check_scale(frame, latitude_deg, longitude_deg, place)
+
+
+def _check_scale(frame: LocalFrame, latitude_deg: float, longitude_deg: float, place: str) -> None:
+    factors = _projection(frame.crs).get_factors(longitude_deg, latitude_deg)
+    worst = max(factors.meridional_scale, factors.parallel_scale, key=lambda scale: abs(scale - 1.0))
+    if abs(worst - 1.0) > _LARGEST_SCALE_ERROR:
+        raise InputError(
+            place,
+            f"{frame.crs}, in which a metre is {worst:.2f} m long at {latitude_deg:.2f}, {longitude_deg:.2f} deg",
+            f"a system of true lengths there, such as {utm_crs(latitude_deg, longitude_deg)}",
             "correct or remove the key",
         )
 

@@ -95,6 +95,7 @@ def test_crs_in_feet_is_refused():
         ("EPSG:32633", -33.9, 151.2, False),
         ("EPSG:32660", 52.0, -179.0, True),  # across the date line
         ("EPSG:3857", 10.0, 170.0, True),
+        ("EPSG:3413", 84.0, -45.0, True),
     ],
 )
 def test_crs_of_another_part_of_the_earth_is_told(crs, latitude, longitude, near):
@@ -103,3 +104,10 @@ def test_crs_of_another_part_of_the_earth_is_told(crs, latitude, longitude, near
     else:
         with pytest.raises(InputError, match=r"made for .*, with positions at -33\.90, .*such as EPSG:327"):
             check_is_near(projected_frame(crs), latitude, longitude, "source.navigation.crs")
+
+
+@pytest.mark.parametrize(("crs", "scale"), [("EPSG:3857", "1.20"), ("EPSG:6933", "1.04")])
+def test_crs_whose_metres_are_none_is_told(crs, scale):
+    """Scales 1 / cos(33.9 deg) = 1.205 of Web Mercator, and cos(30 deg) / cos(33.9 deg) = 1.043 of equal areas."""
+    with pytest.raises(InputError, match=rf"{crs}, in which a metre is {scale} m long at -33.90, .*such as EPSG:32756"):
+        check_is_near(projected_frame(crs), -33.9, 151.2, "source.navigation.crs")
