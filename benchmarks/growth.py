@@ -7,21 +7,27 @@ Puts its table into docs/cluster.md, between the two marks there, with what to e
 import argparse
 import math
 import os
+import re
 import shutil
-import subprocess
 import sys
 import tempfile
-import time
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import yaml
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "workflow"))
+
+import tiny_project
+from process_cost import Cost, measured
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "cluster.md"
 BEGIN, END = "<!-- growth -->\n", "<!-- end of growth -->\n"
 JOBS = (10, 100, 1000)
 PLATFORMS = (1, 10, 100)
+JOB_COST = re.compile(r"took \S+ s, (\S+) s of processor time", re.ASCII)  # the end of a job's log
 PROCESSES = (1, 2)
 NODES, CORES_OF_A_NODE = 100, 16
 CELLS, SURVEYS = 44, 200  # of the coverage study
@@ -40,26 +46,19 @@ QUICK = {
 REGIME = {"white": {"white_level": 1.0, "noise_models": ["published"]}}
 
 
-@dataclass(frozen=True)
-class Cost:
-    """What a process cost: seconds by the clock, seconds of processor time, MB at its peak."""
-
-    wall_s: float
-    processor_s: float
-    peak_mb: float
-
-
 def main() -> None:
     """Measure all, print the table, and put it into the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--print", action="store_true", help="Only print the table.")
     parser.add_argument("--surveys", type=int, default=40, help="Surveys of the coverage cell that is timed.")
+    parser.add_argument("--study", type=int, default=10, help="Platforms of the study that is run.")
     arguments = parser.parse_args()
     rows = [f"{os.cpu_count()} cores, with a load of {os.getloadavg()[0]:.0f} at the beginning.", ""]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         overhead_s = jobs(folder, rows)
         start_s = platforms(folder, rows)
+        study(folder, arguments.study, rows)
         survey_s = processes(folder, arguments.surveys, rows)
     expected(overhead_s, survey_s, start_s, rows)
     print("\n".join(rows))
@@ -101,6 +100,24 @@ def platforms(folder: Path, rows: list[str]) -> float:
     return start_s
 
 
+def study(folder: Path, count: int, rows: list[str]) -> None:
+    """Of a study of tiny platforms that is run, from scans to pages: what a job costs beside its own work."""
+    place = project(folder / "study", count, 1, tiny_project.QUICK)
+    targets = [f"results/p{number}/report.html" for number in range(count)]
+    command = ["--snakefile", str(ROOT / "Snakefile"), "--cores", "2", "--quiet", "all", "--"]
+    cost = snakemake(place, *command, *targets, "results/report.html")
+    logs = [path.read_text() for path in (place / "results" / "logs").rglob("*.log")]
+    of_jobs_s = [float(found[1]) for found in map(JOB_COST.search, logs) if found]
+    beside_s = (cost.processor_s - sum(of_jobs_s)) / len(of_jobs_s)
+    rows += [
+        "",
+        "| tiny platforms, run | jobs | time | a job's own work | beside it, a job | head process at its peak |",
+    ]
+    rows += ["| --- " * 6 + "|"]
+    work = f"{sum(of_jobs_s) / len(of_jobs_s):.2f} s | {beside_s:.2f} s of processor time"
+    rows += [f"| {count} | {len(of_jobs_s):,} | {cost.wall_s:.0f} s | {work} | {cost.peak_mb:.0f} MB |"]
+
+
 def processes(folder: Path, surveys: int, rows: list[str]) -> float:
     """Of a coverage cell: what more processes save; seconds of one core a survey, start-up included."""
     rows += ["", f"| processes | coverage cell of {surveys} surveys | processor time |", "| --- " * 3 + "|"]
@@ -139,12 +156,12 @@ def expected(overhead_s: float, survey_s: float, start_s: float, rows: list[str]
         rows.append(f"| {where} | {count} | {' | '.join(minutes)} |")
 
 
-def project(place: Path, n_platforms: int, n_surveys: int) -> Path:
+def project(place: Path, n_platforms: int, n_surveys: int, platform: Mapping[str, Any] = QUICK) -> Path:
     """A folder with so many simulated platforms, without long experiments, and a coverage study of one cell."""
     shutil.copytree(ROOT / "config", place / "config", ignore=shutil.ignore_patterns("paper"))
     names = [f"p{number}" for number in range(n_platforms)]
     for name in names:
-        (place / "config" / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(QUICK))
+        (place / "config" / "platforms" / f"{name}.yaml").write_text(yaml.safe_dump(dict(platform)))
     coverage = {"platforms": names[:1], "n_surveys": n_surveys, "batch_size": 5, "regimes": REGIME}
     (place / "config" / "config.yaml").write_text(yaml.safe_dump({"platforms": names, "coverage": coverage}))
     return place
@@ -152,16 +169,8 @@ def project(place: Path, n_platforms: int, n_surveys: int) -> Path:
 
 def snakemake(place: Path, *arguments: str, log: Path | None = None) -> Cost:
     """Run Snakemake in a folder; what it cost. Ends the benchmark where it fails."""
-    command = [sys.executable, "-m", "snakemake", *arguments]
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
-    log = log or place / "log.txt"
-    begun = time.perf_counter()
-    with log.open("w") as file:
-        process = subprocess.Popen(command, cwd=place, env=environment, stdout=file, stderr=file)
-        _, status, used = os.wait4(process.pid, 0)
-    if status:
-        sys.exit(log.read_text())
-    return Cost(time.perf_counter() - begun, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
+    environment = {"OMP_NUM_THREADS": "1", "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    return measured([sys.executable, "-m", "snakemake", *arguments], place, log or place / "log.txt", environment)
 
 
 if __name__ == "__main__":

@@ -4,13 +4,12 @@ In a folder of its own, with the project's configuration but for the simulated p
 """
 
 import os
-import resource
 import shutil
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
+
+from process_cost import measured
 
 from linepose.config.platform import load_platform, read_yaml
 
@@ -28,22 +27,10 @@ def main() -> None:
         shutil.copytree(ROOT / "config", Path(folder) / "config")
         command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]
         settings = [f"platforms={platforms}", f"data_folders={folders}"]
-        begun = time.perf_counter()
-        run = subprocess.run(
-            [*command, "--config", *settings],
-            cwd=folder,
-            env=os.environ | {"NUMBA_CACHE_DIR": str(Path(folder) / "compiled")},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        seconds = time.perf_counter() - begun
-    if run.returncode:
-        sys.exit(run.stderr)
-    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
-    processor_s = spent.ru_utime + spent.ru_stime
+        environment = {"NUMBA_CACHE_DIR": str(Path(folder) / "compiled")}
+        cost = measured([*command, "--config", *settings], Path(folder), Path(folder) / "log.txt", environment)
     print(f"The whole workflow on the field data ({', '.join(platforms)}), from clean, {cores} cores: ", end="")
-    print(f"{seconds:.0f} s, {processor_s:.0f} s of processor time; to reach: {TO_REACH_S} s")
+    print(f"{cost.wall_s:.0f} s, {cost.processor_s:.0f} s of processor time; to reach: {TO_REACH_S} s")
 
 
 if __name__ == "__main__":
