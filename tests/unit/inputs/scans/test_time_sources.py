@@ -75,6 +75,13 @@ def test_events_of_a_receiver_are_lines(tmp_path, name):
     np.testing.assert_array_equal(times(scan, time_stamps="novatel", event=name), START_US + LINES)
 
 
+def test_one_log_of_a_scan_whose_name_has_the_signs_of_a_pattern(tmp_path):
+    scan = scan_of(tmp_path, "run[1]")
+    events(tmp_path / "drive.gps", [OF_WEEK_S])
+    found = times(scan, time_stamps="novatel", time_file="drive.gps", scans="run[1].hdr")
+    np.testing.assert_array_equal(found, START_US + LINES)
+
+
 def test_events_that_were_logged_twice_or_without_a_valid_clock_are_told(tmp_path, caplog):
     scan = scan_of(tmp_path)
     events(tmp_path / "run-01.gps", [OF_WEEK_S], "MARKTIME")
