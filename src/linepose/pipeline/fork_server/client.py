@@ -37,7 +37,7 @@ def run_forked(script: str, threads: int) -> int | None:
     Output goes to this process's streams. The job ends with this process, and with Snakemake.
     """
     folder = os.environ.get(FOLDER)
-    if not folder or threads > 1 or not hasattr(os, "pidfd_open"):
+    if not folder or threads > 1 or not _can_follow(int(os.environ[SNAKEMAKE])):
         return None
     try:
         connection = _connect(Path(folder))
@@ -45,6 +45,17 @@ def run_forked(script: str, threads: int) -> int | None:
         return None
     with connection:
         return _run(connection, script)
+
+
+def _can_follow(process: int) -> bool:
+    """Whether this system, and what confines its processes, lets the server wait for another process to end."""
+    if not hasattr(os, "pidfd_open"):
+        return False
+    try:
+        os.close(os.pidfd_open(process))
+    except OSError:
+        return False
+    return True
 
 
 def _run(connection: socket.socket, script: str) -> int | None:

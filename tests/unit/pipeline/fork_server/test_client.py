@@ -87,6 +87,15 @@ def test_a_job_of_several_threads_or_without_a_run_is_not_handed_over(snakemake,
     assert run_forked(script(tmp_path, ""), threads=1) is None
 
 
+def test_where_a_process_cannot_be_followed_no_server_is_started(snakemake, tmp_path, monkeypatch):
+    def forbidden(process):
+        raise PermissionError(process)
+
+    monkeypatch.setattr(os, "pidfd_open", forbidden)
+    assert run_forked(script(tmp_path, ""), threads=1) is None
+    assert not Path(os.environ[FOLDER]).exists()
+
+
 def test_a_job_whose_server_was_killed_runs_in_its_own_process(snakemake, tmp_path):
     server = tmp_path / "server"
     tells = script(tmp_path, f"import os; open({str(server)!r}, 'w').write(str(os.getppid()))")
