@@ -1,5 +1,6 @@
 """Resonon's location files (.lcf): rows of numbers, read alike for poses and for the time of a scan's first line."""
 
+import logging
 from pathlib import Path
 from typing import Final
 
@@ -14,6 +15,8 @@ from linepose.inputs.number_files import plain_float
 
 _FEWEST_COLUMNS: Final = 7
 
+log = logging.getLogger(__name__)
+
 
 def location_unix_us(time_s: Floats, time_scale: TimeScale, path: Path) -> NDArray[np.int64]:
     """Unix times (us) of the first column; raises InputError naming the file for what is no time."""
@@ -22,11 +25,18 @@ def location_unix_us(time_s: Floats, time_scale: TimeScale, path: Path) -> NDArr
 
 
 def location_rows(path: Path) -> Floats:
-    """The numbers of a location file (K, C); raises InputError naming the row that has others."""
-    rows: list[list[float]] = []
-    for number, line in enumerate(_lines(path), start=1):
+    """The numbers of a location file (K, C); raises InputError naming the row that has others.
+
+    A last row that was cut is passed over, and told.
+    """
+    lines, rows = _lines(path), list[list[float]]()
+    for number, line in enumerate(lines, start=1):
+        words = line.split()
+        if number == len(lines) and rows and len(words) < len(rows[0]):
+            log.warning("%s: the last row was cut and is passed over", path)
+            break
         try:
-            rows.append([plain_float(word) for word in line.split()])
+            rows.append([plain_float(word) for word in words])
         except ValueError:
             raise InputError(f"{path}, row {number}", repr(line[:60]), "numbers apart by spaces", "mend it") from None
         if len(rows[-1]) < _FEWEST_COLUMNS or len(rows[-1]) != len(rows[0]):
@@ -43,7 +53,7 @@ def location_rows(path: Path) -> Floats:
 
 def _lines(path: Path) -> list[str]:
     try:
-        return path.read_text(encoding="utf-8").rstrip().splitlines()
+        return path.read_text(encoding="utf-8-sig").rstrip().splitlines()
     except UnicodeDecodeError:
         expected = "a location file (.lcf)"
         raise InputError(str(path), "bytes that are no text", expected, "correct source.navigation.format") from None

@@ -98,9 +98,10 @@ def geodetic_record(
     Angles and covariances, which are about true north at each place, are turned into the frame with the positions.
     Raises InputError naming a broken record.
     """
+    poses = [_placed(_known(one)) for one in poses]
     for one in poses:
         check_geodetic(one.position, one.place)
-    both = _joined_poses([_placed(one) for one in poses])
+    both = _joined_poses(poses)
     frame = _frame(section, both.position[0])
     position, euler = _in_frame(frame, both)
     if not np.all(np.isfinite(position)):
@@ -209,12 +210,24 @@ def _joined_poses(parts: Sequence[Poses]) -> Poses:
     return joined
 
 
+def _known(part: Poses) -> Poses:
+    """The poses without those that hold no numbers, as before the first solution; how many is told."""
+    known = np.all(np.isfinite(np.hstack([part.position, part.euler_rad])), axis=1)
+    if known.all() or not known.any():
+        return part
+    log.warning("%s: %d of %d records without a value are left out", part.place, np.sum(~known), len(known))
+    return _of(part, known)
+
+
 def _placed(part: Poses) -> Poses:
     """The poses without those of a device that had no fix yet; how many is told."""
     kept = placed(part.position, part.place)
-    if np.all(kept):
-        return part
-    return replace(part, time_us=part.time_us[kept], position=part.position[kept], euler_rad=part.euler_rad[kept])
+    return part if np.all(kept) else _of(part, kept)
+
+
+def _of(part: Poses, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Poses:
+    """These of the poses."""
+    return replace(part, time_us=part.time_us[rows], position=part.position[rows], euler_rad=part.euler_rad[rows])
 
 
 def _in_order(part: Poses) -> Poses:
@@ -225,8 +238,7 @@ def _in_order(part: Poses) -> Poses:
     if not behind:
         return part
     log.warning("%s: %d records stand behind later ones; all are sorted by time", part.place, behind)
-    order = np.argsort(part.time_us, kind="stable")
-    return replace(part, time_us=part.time_us[order], position=part.position[order], euler_rad=part.euler_rad[order])
+    return _of(part, np.argsort(part.time_us, kind="stable"))
 
 
 def _without_repeats(part: Poses) -> Poses:
@@ -235,7 +247,7 @@ def _without_repeats(part: Poses) -> Poses:
     if np.all(kept):
         return part
     log.warning("%s: %d records that repeat the one before are passed over", part.place, np.count_nonzero(~kept))
-    return replace(part, time_us=part.time_us[kept], position=part.position[kept], euler_rad=part.euler_rad[kept])
+    return _of(part, kept)
 
 
 def _not_repeated(time_us: NDArray[np.int64], values: Floats) -> NDArray[np.bool_]:

@@ -34,12 +34,20 @@ def test_rows_not_to_be_used_are_left_out(tmp_path, drive):
     np.testing.assert_array_equal(times, np.delete(drive.time_us, 1))
 
 
+def test_a_last_row_that_was_cut_is_passed_over(tmp_path, drive, caplog):
+    writers.write_location(tmp_path / "a.lcf", drive)
+    text = (tmp_path / "a.lcf").read_text().rstrip()
+    (tmp_path / "a.lcf").write_text("\ufeff" + text[: -len(text.splitlines()[-1]) // 2])
+    np.testing.assert_array_equal(read_navigation(SECTION, tmp_path).log.time_us, drive.time_us[:-1])
+    assert "a.lcf: the last row was cut and is passed over" in caplog.text
+
+
 @pytest.mark.parametrize(
     ("content", "told"),
     [
         ("", r"a.lcf: found an empty file"),
         ("1 2 3\n", r"a.lcf, row 1: found 3 columns, expected 7 columns: time, roll, pitch, heading, longitude"),
-        ("1150035200.0 0 0 0 151 -33 42\n1150035200.1 0 0 0 151 -3", r"row 2: found 6 columns, expected 7 columns"),
+        ("1150035200.0 0 0 0 151 -33 42\n1 2 3 4 5 6\n" * 2, r"row 2: found 6 columns, expected 7 columns"),
         ("time roll\n", r"a.lcf, row 1: found 'time roll', expected numbers apart by spaces"),
         ("1150035200.0 0 0 0 -33 151 42\n" * 2, r"record 1: found latitude 151, longitude -33 deg"),
     ],

@@ -88,3 +88,14 @@ def test_every_file_is_one_that_the_workflow_watches(tmp_path, drive):
     writers.write_sbet(tmp_path / "a.sbet", drive)
     writers.write_rms(tmp_path / "a.rms", drive)
     assert section(rms="*.rms").files(tmp_path) == {tmp_path / "a.sbet", tmp_path / "a.rms"}
+
+
+def test_records_without_numbers_are_left_out(tmp_path, drive, caplog):
+    """As before the first solution; a place or an angle that is none does not refuse the file."""
+    writers.write_sbet(tmp_path / "a.sbet", drive)
+    table = np.fromfile(tmp_path / "a.sbet").reshape(-1, 17)
+    table[0, 1], table[3, 8] = np.nan, np.inf
+    table.tofile(tmp_path / "a.sbet")
+    record = read_navigation(section(gps_week=int(drive.week[0]), origin=ORIGIN), tmp_path)
+    np.testing.assert_array_equal(record.log.time_us, np.delete(drive.time_us, [0, 3]))
+    assert f"a.sbet: 2 of {len(table)} records without a value are left out" in caplog.text
