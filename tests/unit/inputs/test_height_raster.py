@@ -9,12 +9,10 @@ from linepose.errors import InputError
 from linepose.inputs.height_raster import read_heights
 
 
-def write(path, bands, nodata=None):
+def write(path, bands, nodata=None, size=(2.0, 1.0), crs="EPSG:32756"):
     profile = {"driver": "GTiff", "count": len(bands), "height": bands[0].shape[0], "width": bands[0].shape[1]}
-    transform = from_origin(100.0, 200.0, 2.0, 1.0)
-    with rasterio.open(
-        path, "w", dtype="float32", crs="EPSG:32756", transform=transform, nodata=nodata, **profile
-    ) as to:
+    transform = from_origin(100.0, 200.0, *size)
+    with rasterio.open(path, "w", dtype="float32", crs=crs, transform=transform, nodata=nodata, **profile) as to:
         to.write(np.array(bands, dtype=np.float32))
     return path
 
@@ -41,6 +39,16 @@ def one_row(path):
     write(path, [np.ones((1, 3))])
 
 
+def dust(path):
+    write(path, [np.ones((3, 3))], size=(8e-317, 1.0))
+
+
+def no_text(path):
+    """The name of its system in bytes that are none."""
+    write(path, [np.ones((3, 3))], crs="+proj=tmerc +lat_0=1 +lon_0=151 +datum=WGS84 +units=m")
+    path.write_bytes(path.read_bytes().replace(b"unknown", b"unkn\xffwn"))
+
+
 @pytest.mark.parametrize(
     ("make", "told"),
     [
@@ -49,6 +57,8 @@ def one_row(path):
         (two_bands, "found 2 bands of 3 x 3 cells"),
         (one_row, "found 1 bands of 3 x 1 cells"),
         (nothing, "no height in any cell"),
+        (dust, "cells without a size"),
+        (no_text, "expected a raster of heights, as a GeoTIFF"),
     ],
 )
 @pytest.mark.filterwarnings("ignore")
