@@ -46,7 +46,16 @@ def adjusted_intrinsics() -> pd.DataFrame:
     """A principal point 4 px off the file's, known to 0.3 px; the camera's y turn follows it."""
     turn = np.zeros((6, 2))
     turn[4, 0] = 1.0 / 1108.0
-    return intrinsics_table(AdjustedIntrinsics(327.0, 8.25e-3, np.diag([0.3**2, 1e-5**2]), turn))
+    return intrinsics_table(
+        AdjustedIntrinsics(
+            ("principal_point_px", "focal_length_m"),
+            np.array([327.0, 8.25e-3]),
+            np.diag([0.3**2, 1e-5**2]),
+            turn,
+            np.array([323.0, 8.2e-3]),
+            np.array([2.0, 1e-4]),
+        )
+    )
 
 
 def adjustment() -> pd.DataFrame:

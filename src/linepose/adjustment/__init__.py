@@ -9,8 +9,9 @@ from pathlib import Path
 
 import lazy_loader
 
+from linepose import geometry
 from linepose.compiling.cache import forget_outdated
 
-forget_outdated(Path(__file__).parent)
+forget_outdated(Path(__file__).parent, [Path(geometry.__file__).parent / "lens.py"])
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

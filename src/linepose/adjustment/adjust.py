@@ -111,6 +111,7 @@ def _of_many(
         state_at(fit.state.pose, knowledge.camera, points, measurements),
         principal_point_px=fit.state.principal_point_px,
         focal_length_m=fit.state.focal_length_m,
+        lens=fit.state.lens,
         clock_offset_s=fit.state.clock_offset_s,
     )
     many = solve_many(

@@ -11,7 +11,7 @@ from linepose.adjustment.estimate import Estimate, unit_weights
 from linepose.adjustment.hand_measured import HandMeasuredPrior, ran_off
 from linepose.adjustment.heavy_tailed import with_tails
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import N_CAMERA, point_covariances, trailing_inverse
+from linepose.adjustment.normal import point_covariances, trailing_inverse
 from linepose.adjustment.posterior import Mixture, mixture
 from linepose.adjustment.process import Weights
 from linepose.adjustment.residuals import normalised_residuals
@@ -32,8 +32,8 @@ class Fit:
     """The minimum of chi squared over all measurements.
 
     z (L, 6), q (N, 6): the process; weights: of the tails; normalised (L, 2): residuals; chi_squared; converged;
-    point_covariance (K, 3, 3): NaN where it is not known; camera_covariance (10, 10): of the camera's columns, at the
-    levels' mode.
+    point_covariance (K, 3, 3): NaN where it is not known; camera_covariance (10 + C, 10 + C): of the camera's columns,
+    at the levels' mode.
     """
 
     state: State
@@ -91,7 +91,7 @@ def adjust_all(
         solution.done.chi_squared,
         found.converged and not ran_off(hand, solution.state.position_m),
         point_covariances(solution.done.upper, known.shifts),
-        trailing_inverse(solution.done.upper, N_CAMERA),
+        trailing_inverse(solution.done.upper, len(solution.model.prior.camera)),
     )
     return AllAtOnce(fit, found, curved, spread, fitted)
 

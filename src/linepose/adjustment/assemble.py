@@ -10,7 +10,7 @@ from linepose.adjustment.estimate import Estimate
 from linepose.adjustment.hand_measured import HandMeasuredPrior
 from linepose.adjustment.levels import N_LEVELS
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import COMMON_SHIFT, N_INTRINSICS, N_POSE
+from linepose.adjustment.normal import COMMON_SHIFT, N_POSE
 from linepose.adjustment.posterior import Mixture
 from linepose.adjustment.result import (
     Adjustment,
@@ -58,8 +58,8 @@ def assembled(
     known = np.full((2, survey.n_points), np.nan)
     known[:, measurements.points] = done.known.weight, done.known.sigmas
     shifted = bool(np.any(state.shifts))
-    of_intrinsics = fit.camera_covariance[:N_INTRINSICS, :N_INTRINSICS]
-    by_intrinsics = np.linalg.solve(of_intrinsics, fit.camera_covariance[:N_INTRINSICS, -N_POSE:]).T
+    of_intrinsics = fit.camera_covariance[:COMMON_SHIFT, :COMMON_SHIFT]
+    by_intrinsics = np.linalg.solve(of_intrinsics, fit.camera_covariance[:COMMON_SHIFT, -N_POSE:]).T
     view_rows = np.empty(measurements.n_views, dtype=np.int64)
     view_rows[measurements.view] = measurements.row
     constants, view_weight = np.full((survey.n_observations, N_POSE), np.nan), np.full(survey.n_observations, np.nan)
@@ -69,6 +69,7 @@ def assembled(
         covariance=by_parameters @ step_covariance @ by_parameters.T,
         principal_point_px=state.principal_point_px,
         focal_length_m=state.focal_length_m,
+        coefficients={name: float(getattr(state.lens, name)) for name in state.sought},
         intrinsics_covariance=of_intrinsics,
         pose_by_intrinsics=np.asarray(by_intrinsics, dtype=float),
         points_m=points,

@@ -19,7 +19,7 @@ from linepose.adjustment.estimate import unit_weights
 from linepose.adjustment.iterative import Equations, Preconditioner, blocks, conjugate_gradients, equations, smooth
 from linepose.adjustment.levels import Levels, levels_from_log
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import N_CAMERA, N_POSE
+from linepose.adjustment.normal import N_POSE
 from linepose.adjustment.posterior import Mixture
 from linepose.adjustment.process import Weights, components, corrections, error_image
 from linepose.adjustment.start import behind_at_start
@@ -46,7 +46,7 @@ _WEIGHT_SUM: Final = DEGREES_OF_FREEDOM + MEASUREMENT_DIMENSION
 class ManySolution:
     """A minimum of chi squared over all measurements.
 
-    camera_covariance (10, 10): of principal point, focal length, common shift, clock offset and pose; whitened (L, 2):
+    camera_covariance (10 + C, 10 + C): of the camera's columns; whitened (L, 2):
     residuals; z (L, 6), q (N, 6): the process; weights: of the tails; chi_squared; n_steps; converged.
     """
 
@@ -124,13 +124,13 @@ def solve_many(
             break
         state, steps = state.moved(_held(step, state, measurements), correction), steps + 1
     chi_squared = float(np.sum(whitened**2)) + system.prior.chi_squared
-    nothing = np.full((N_CAMERA, N_CAMERA), np.nan)
+    nothing = np.full(system.prior.camera.shape, np.nan)
     known = _camera_covariance(system, inverse) if covariance else nothing
     return ManySolution(state, known, whitened, z, q, weights, chi_squared, steps, converged)
 
 
 def _held(step: Floats, state: State, measurements: Measurements) -> Floats:
-    """The step (3 K + 10,) with no point moved by more than a share of its distance from the nearest body that saw it.
+    """The step (3 K + 10 + C,) with no point moved by more than a share of its distance from the nearest body.
 
     Of two nearly parallel rays, one of which is a wrong match, the linear model throws the point behind the camera
     before the match has lost its weight.
@@ -138,14 +138,15 @@ def _held(step: Floats, state: State, measurements: Measurements) -> Floats:
     away = np.linalg.norm(state.points_m[measurements.point] - measurements.body_pose[:, :3], axis=1)
     nearest = np.full(measurements.n_points, np.inf)
     np.minimum.at(nearest, measurements.point, away)
-    points = step[:-N_CAMERA].reshape(-1, 3)
+    n = 3 * measurements.n_points
+    points = step[:n].reshape(-1, 3)
     length = np.linalg.norm(points, axis=1)
     share = np.minimum(1.0, _LARGEST_MOVE * nearest / np.maximum(length, np.finfo(float).tiny))
-    return np.concatenate([(share[:, None] * points).ravel(), step[-N_CAMERA:]])
+    return np.concatenate([(share[:, None] * points).ravel(), step[n:]])
 
 
 def covariance_of_many(measurements: Measurements, knowledge: Knowledge, state: State, levels: Levels) -> Floats:
-    """Covariance (10, 10) of the camera's columns at a state and levels, which need not be a minimum.
+    """Covariance (10 + C, 10 + C) of the camera's columns at a state and levels, which need not be a minimum.
 
     Raises EstimationError where a point lies behind the camera, or the normal equations cannot be solved.
     """
@@ -160,12 +161,13 @@ def covariance_of_many(measurements: Measurements, knowledge: Knowledge, state: 
 
 
 def _camera_covariance(system: Equations, inverse: Preconditioner) -> Floats:
-    """Covariance (10, 10) of the camera's columns."""
-    covariance = np.empty((N_CAMERA, N_CAMERA))
-    for i in range(N_CAMERA):
-        unit = np.zeros(3 * system.n_points + N_CAMERA)
-        unit[i - N_CAMERA] = 1.0
-        covariance[i] = conjugate_gradients(system, inverse, unit, _COVARIANCE_PRECISION)[0][-N_CAMERA:]
+    """Covariance (10 + C, 10 + C) of the camera's columns."""
+    n_points, n_camera = 3 * system.n_points, len(system.prior.camera)
+    covariance = np.empty((n_camera, n_camera))
+    for i in range(n_camera):
+        unit = np.zeros(n_points + n_camera)
+        unit[n_points + i] = 1.0
+        covariance[i] = conjugate_gradients(system, inverse, unit, _COVARIANCE_PRECISION)[0][n_points:]
     return (covariance + covariance.T) / 2
 
 

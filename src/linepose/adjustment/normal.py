@@ -1,7 +1,7 @@
 """Normal equations of the whitened linear model: points, intrinsics, clock offset and pose in one triangular factor.
 
-Columns are ordered: points (3 K), principal point, focal length, common shift, clock offset, pose (6), and the residual
-last. The
+Columns are ordered: points (3 K), principal point, focal length, what is sought of the lens (C), common shift, clock
+offset, pose (6), and the residual last; those from the principal point to the pose are the camera's (10 + C). The
 Cholesky factor of their products holds all that the adjustment asks for: the residual's last pivot is the least chi
 squared, the other pivots are the determinant, and the trailing blocks are marginal: of the pose, of pose and clock
 offset, and of all that is not a point. Without an estimate of shift or clock offset the column is zero and its prior
@@ -19,21 +19,17 @@ from linepose.adjustment.whitening import Factor, factorise, whiten
 from linepose.arrays import Floats
 from linepose.compiling.kernels import kernel
 
-N_INTRINSICS: Final = 2
-COMMON_SHIFT: Final = N_INTRINSICS  # its column among those of the camera
-CLOCK_OFFSET: Final = COMMON_SHIFT + 1
-N_SHARED: Final = CLOCK_OFFSET + 1
 N_POSE: Final = 6
-N_CAMERA: Final = N_SHARED + N_POSE
+CLOCK_OFFSET: Final = -N_POSE - 1  # its column among those of the camera, counted from their end
+COMMON_SHIFT: Final = CLOCK_OFFSET - 1
 _WIDTH: Final = 4  # columns are padded to a multiple of it
 
 
 class Prior(NamedTuple):
     """What is known beside the measurements, as quadratic forms about the present estimate.
 
-    camera (10, 10), camera_vector (10,): information of principal point, focal length, common shift, clock offset and
-    pose, and its product with what the step ought to be; points (K, 3, 3), points_vector (K, 3): the same of points;
-    chi_squared: with no step.
+    camera (10 + C, 10 + C), camera_vector (10 + C,): information of the camera's columns, and its product with what the
+    step ought to be; points (K, 3, 3), points_vector (K, 3): the same of points; chi_squared: with no step.
     """
 
     camera: Floats
@@ -62,8 +58,9 @@ class Pass(NamedTuple):
 @kernel
 def design(linearised: Linearised, correction: Floats, point_of: np.ndarray, n_points: int) -> Floats:
     """Columns (2 L, n) of the linear model before whitening, the residual `y - h + J c0` last but for padding."""
-    first = 3 * n_points
-    used = first + N_CAMERA + 1
+    first, n_camera = 3 * n_points, linearised.by_theta.shape[2]
+    n_shared = n_camera - N_POSE
+    used = first + n_camera + 1
     n = linearised.residual_px.shape[0]
     rows = np.zeros((2 * n, (used + _WIDTH - 1) // _WIDTH * _WIDTH))
     for line in range(n):
@@ -72,13 +69,13 @@ def design(linearised: Linearised, correction: Floats, point_of: np.ndarray, n_p
             start = 3 * point_of[line]
             for i in range(3):
                 out[start + i] = linearised.by_point[line, row, i]
-            for i in range(N_SHARED):
+            for i in range(n_shared):
                 out[first + i] = theta[N_POSE + i]
             residual = linearised.residual_px[line, row]
             for i in range(6):
-                out[first + N_SHARED + i] = theta[i]
+                out[first + n_shared + i] = theta[i]
                 residual += linearised.by_body[line, row, i] * correction[line, i]
-            out[first + N_CAMERA] = residual
+            out[first + n_camera] = residual
     return rows
 
 
@@ -139,8 +136,8 @@ def cholesky_upper(matrix: Floats) -> None:
 def one_pass(rows: Floats, process: Components, view: np.ndarray, begins: np.ndarray, prior: Prior) -> Pass:
     """Whiten the columns (2 L, n) and factor the normal equations with the prior added; NaN where they are singular."""
     n_points = prior.points.shape[0]
-    first = 3 * n_points
-    n = first + N_CAMERA + 1
+    first, n_camera = 3 * n_points, prior.camera.shape[0]
+    n = first + n_camera + 1
     factor = factorise(process, view, begins)
     whitened = rows.copy()
     whiten(factor, whitened)
@@ -150,9 +147,9 @@ def one_pass(rows: Floats, process: Components, view: np.ndarray, begins: np.nda
             upper[3 * point + i, n - 1] += prior.points_vector[point, i]
             for j in range(i, 3):
                 upper[3 * point + i, 3 * point + j] += prior.points[point, i, j]
-    for i in range(N_CAMERA):
+    for i in range(n_camera):
         upper[first + i, n - 1] += prior.camera_vector[i]
-        for j in range(i, N_CAMERA):
+        for j in range(i, n_camera):
             upper[first + i, first + j] += prior.camera[i, j]
     upper[n - 1, n - 1] += prior.chi_squared
     before = upper[n - 1, n - 1]
@@ -219,7 +216,7 @@ def point_covariances(upper: Floats, shifts: Floats) -> Floats:
     n, n_points = upper.shape[0] - 1, len(shifts)
     inverse = solve_triangular(np.triu(upper[:n, :n]), np.eye(n))
     rows = inverse[: 3 * n_points].reshape(n_points, 3, n).copy()
-    rows[:, 2] += shifts[:, None] * inverse[3 * n_points + COMMON_SHIFT]
+    rows[:, 2] += shifts[:, None] * inverse[COMMON_SHIFT]
     return np.asarray(rows @ np.swapaxes(rows, 1, 2))
 
 

@@ -22,8 +22,8 @@ def optics_of(found: Adjustment, camera: Camera) -> Optics:
         float(found.principal_point_px),
         float(found.focal_length_m),
         camera.pixel_pitch_m,
-        camera.k1,
-        camera.k2,
+        camera.lens.at(found.coefficients),
+        np.empty(0, dtype=np.int64),
     )
 
 

@@ -77,27 +77,27 @@ class Adjustment:
     """The estimated pose, how sure it is, and what the errors were; N observations of M points, as in the survey.
 
     pose (6,): at the mode, with a rotation vector; covariance (6, 6): the posterior's, of the pose's parameters;
-    principal_point_px, focal_length_m; intrinsics_covariance (2, 2): of these two, and pose_by_intrinsics (6, 2): how
-    the estimate of position (m) and small turn about body axes (rad) follows them, at the levels' mode; points_m (M,
-    3): from the survey's origin, NaN for a point left out; point_covariance (M, 3, 3): at the levels' mode, NaN where
-    it is not known; levels: at their mode; level_intervals (7, 2): what holds each with 95 %, NaN for one that was not
-    estimated; corrections (N, M, 6): of the reported body poses (m, rad); constants (N, 6), drifts (N, M, 6): of the
-    process, in its own units; view_weight (N,), measurement_weight (N, M): 1 is as good as the levels say, towards 0 is
-    bad; normalised (N, M, 2): whitened residuals along and across the line, each a standard normal number if the model
-    is right; samples: independent draws of the pose, and of the clock offset if it is estimated, in the columns of a
-    chain (walker, step, pose, log_likelihood); clock_offset_s: what is added to the scan's time stamps to get the
-    navigation's time, positive if the stamps are too early, and clock_offset_sigma_s: the posterior's, both NaN where
-    it was not estimated.
-    Everything of a measurement is NaN where there is none. known_weight, known_sigmas (M,): of each known point, one
-    unless it contradicts the rest, and how many sigmas it is off them, NaN where nothing of its own is known;
-    common_shift_m, common_shift_sigma_m: how far the ground lies below the heights that err in common, NaN where none
-    are given.
+    principal_point_px, focal_length_m, and coefficients of the lens that were estimated, by name; intrinsics_covariance
+    (I, I): of all these in this order, and pose_by_intrinsics (6, I): how the estimate of position (m) and small turn
+    about body axes (rad) follows them, at the levels' mode; points_m (M, 3): from the survey's origin, NaN for a point
+    left out; point_covariance (M, 3, 3): at the levels' mode, NaN where it is not known; levels: at their mode;
+    level_intervals (7, 2): what holds each with 95 %, NaN for one that was not estimated; corrections (N, M, 6): of the
+    reported body poses (m, rad); constants (N, 6), drifts (N, M, 6): of the process, in its own units; view_weight
+    (N,), measurement_weight (N, M): 1 is as good as the levels say, towards 0 is bad; normalised (N, M, 2): whitened
+    residuals along and across the line, each a standard normal number if the model is right; samples: independent draws
+    of the pose, and of the clock offset if it is estimated, in the columns of a chain (walker, step, pose,
+    log_likelihood); clock_offset_s: what is added to the scan's time stamps to get the navigation's time, positive if
+    the stamps are too early, and clock_offset_sigma_s: the posterior's, both NaN where it was not estimated. Everything
+    of a measurement is NaN where there is none. known_weight, known_sigmas (M,): of each known point, one unless it
+    contradicts the rest, and how many sigmas it is off them, NaN where nothing of its own is known; common_shift_m,
+    common_shift_sigma_m: how far the ground lies below the heights that err in common, NaN where none are given.
     """
 
     pose: Floats
     covariance: Floats
     principal_point_px: float
     focal_length_m: float
+    coefficients: dict[str, float]
     intrinsics_covariance: Floats
     pose_by_intrinsics: Floats
     points_m: Floats

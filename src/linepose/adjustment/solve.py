@@ -16,7 +16,7 @@ import numpy as np
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.linearise import Linearised
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import N_CAMERA, N_POSE, Pass, Prior, design, one_pass, solve_step, whitened_residual
+from linepose.adjustment.normal import N_POSE, Pass, Prior, design, one_pass, solve_step, whitened_residual
 from linepose.adjustment.process import Components, ErrorImage, Weights, components, corrections, error_image
 from linepose.adjustment.start import behind_at_start
 from linepose.adjustment.state import Knowledge, State, linearised_at
@@ -118,7 +118,7 @@ def solve(
                 "adjustment: singular normal equations; add observations from other directions, or drop points that "
                 "are seen from one direction only"
             )
-        step = _step(done, damping, n_held)
+        step = _step(done, 3 * measurements.n_points, damping, n_held)
         dual = unwhiten(done.factor, whitened_residual(done, step))
         correction, z, q = corrections(structure, process, model.linearised, levels, weights, dual)
         near = done.chi_squared_before - _after(done, step) < tolerance / (1 + damping)
@@ -175,9 +175,8 @@ def _held(step: Floats) -> Floats:
     return step / share
 
 
-def _step(done: Pass, damping: float, n_held: int) -> Floats:
+def _step(done: Pass, first_free: int, damping: float, n_held: int) -> Floats:
     n = len(done.upper) - 1
-    first_free = n - N_CAMERA
     if n_held == 0:
         return solve_step(done.upper, first_free, damping)
     inner = n - n_held

@@ -41,7 +41,7 @@ def start_points(measurements: Measurements, camera: Camera, pose: Floats) -> Fl
             "camera",
             "intrinsic parameters whose rays are no numbers",
             "those of a camera that has seen these pixels",
-            "correct focal_length_m, pixel_pitch_m, principal_point_px, k1 and k2",
+            "correct focal_length_m, pixel_pitch_m, principal_point_px, and the distortion",
         )
     direction = direction / length
     if not looks_down(measurements, pose):

@@ -7,18 +7,20 @@ import numpy as np
 from linepose.adjustment.hand_measured import HandMeasuredPrior
 from linepose.adjustment.linearise import Linearised, Optics, empty_linearised, linearise
 from linepose.adjustment.measurements import Measurements
-from linepose.adjustment.normal import CLOCK_OFFSET, COMMON_SHIFT, N_CAMERA, N_INTRINSICS, N_POSE, N_SHARED, Prior
+from linepose.adjustment.normal import CLOCK_OFFSET, COMMON_SHIFT, N_POSE, Prior
 from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera
+from linepose.geometry.lens import COEFFICIENTS, Lens
 
 
 @dataclass(frozen=True)
 class State:
     """Camera, clock, points and body poses.
 
-    position_m (3,), rotation (3, 3): of the camera in the body; principal_point_px, focal_length_m; clock_offset_s:
-    what is added to the scan's time stamps to get the navigation's time; points_m (K, 3); correction (L, 6): of the
+    position_m (3,), rotation (3, 3): of the camera in the body; principal_point_px, focal_length_m; lens, of
+    which the coefficients `sought` are estimated; clock_offset_s: what is added to the scan's time stamps to get the
+    navigation's time; points_m (K, 3); correction (L, 6): of the
     body poses, beside what the clock offset moves them; shifts (K,): which points follow the common shift, and
     common_shift_m: how far below its source's heights the ground is.
     """
@@ -27,6 +29,8 @@ class State:
     rotation: Floats
     principal_point_px: float
     focal_length_m: float
+    lens: Lens
+    sought: tuple[str, ...]
     clock_offset_s: float
     points_m: Floats
     correction: Floats
@@ -50,21 +54,28 @@ class State:
             float(self.principal_point_px),
             float(self.focal_length_m),
             camera.pixel_pitch_m,
-            camera.k1,
-            camera.k2,
+            self.lens,
+            np.array([COEFFICIENTS.index(name) for name in self.sought], dtype=np.int64),
         )
 
     def moved(self, step: Floats, correction: Floats) -> "State":
-        """The state after a step (3 K + 10,) of all columns of the normal equations, with corrections."""
-        points, camera = step[:-N_CAMERA].reshape(-1, 3), step[-N_CAMERA:]
+        """The state after a step (3 K + 10 + C,) of all columns of the normal equations, with corrections."""
+        n = self.points_m.size
+        points, camera = step[:n].reshape(-1, 3), step[n:]
+        pose = camera[-N_POSE:]
+        found = {
+            name: getattr(self.lens, name) + float(one) for name, one in zip(self.sought, camera[2:], strict=False)
+        }
         shift_m = float(camera[COMMON_SHIFT])
         down = np.array([0.0, 0.0, 1.0])
-        turn = rotations.matrix_from_rotation_vector(camera[N_SHARED + 3 :])
+        turn = rotations.matrix_from_rotation_vector(pose[3:])
         return State(
-            self.position_m + camera[N_SHARED : N_SHARED + 3],
+            self.position_m + pose[:3],
             turn @ self.rotation,
             self.principal_point_px + float(camera[0]),
             self.focal_length_m + float(camera[1]),
+            self.lens.at(found),
+            self.sought,
             self.clock_offset_s + float(camera[CLOCK_OFFSET]),
             self.points_m + points + shift_m * self.shifts[:, None] * down,
             correction,
@@ -74,11 +85,18 @@ class State:
 
 
 def camera_step(before: State, after: State) -> Floats:
-    """Step (10,) of the camera's columns of the normal equations that takes one state to the other."""
+    """Step (10 + C,) of the camera's columns of the normal equations that takes one state to the other."""
     turn = rotations.rotation_vector_from_matrix(after.rotation @ before.rotation.T)
-    intrinsics = [after.principal_point_px - before.principal_point_px, after.focal_length_m - before.focal_length_m]
+    intrinsics = _intrinsics(after) - _intrinsics(before)
     clock_s, shift_m = after.clock_offset_s - before.clock_offset_s, after.common_shift_m - before.common_shift_m
     return np.concatenate([intrinsics, [shift_m, clock_s], after.position_m - before.position_m, turn])
+
+
+def _intrinsics(state: State) -> Floats:
+    """Principal point (px), focal length (m), and the coefficients that are sought; (2 + C,)."""
+    return np.array(
+        [state.principal_point_px, state.focal_length_m, *(getattr(state.lens, name) for name in state.sought)]
+    )
 
 
 def state_at(pose: Floats, camera: Camera, points_m: Floats, measurements: Measurements) -> State:
@@ -88,6 +106,8 @@ def state_at(pose: Floats, camera: Camera, points_m: Floats, measurements: Measu
         rotations.matrix_from_rotation_vector(pose[3:]),
         camera.principal_point_px,
         camera.focal_length_m,
+        camera.lens,
+        camera.uncertain_coefficients,
         0.0,
         points_m,
         np.zeros((len(measurements.u_px), 6)),
@@ -120,16 +140,13 @@ class Knowledge:
 
     def prior(self, state: State, measurements: Measurements) -> Prior:
         """As quadratic forms about a state."""
-        sigma = np.array([self.camera.sigmas.principal_point_px, self.camera.sigmas.focal_length_m])
-        error = np.array(
-            [
-                self.camera.principal_point_px - state.principal_point_px,
-                self.camera.focal_length_m - state.focal_length_m,
-            ]
-        )
-        information, vector = np.zeros((N_CAMERA, N_CAMERA)), np.zeros(N_CAMERA)
-        information[:N_INTRINSICS, :N_INTRINSICS] = np.diag(sigma**-2)
-        vector[:N_INTRINSICS] = error / sigma**2
+        names = ("principal_point_px", "focal_length_m", *state.sought)
+        sigma = np.array([getattr(self.camera.sigmas, name) for name in names])
+        error = np.array([getattr(self.camera, name) for name in names]) - _intrinsics(state)
+        n_intrinsics, n_camera = len(names), len(names) - COMMON_SHIFT
+        information, vector = np.zeros((n_camera, n_camera)), np.zeros(n_camera)
+        information[:n_intrinsics, :n_intrinsics] = np.diag(sigma**-2)
+        vector[:n_intrinsics] = error / sigma**2
         chi_squared = float(np.sum((error / sigma) ** 2))
         clock_sigma_s = self.clock_offset_sigma_s or 1.0
         information[CLOCK_OFFSET, CLOCK_OFFSET] = clock_sigma_s**-2
@@ -142,8 +159,8 @@ class Knowledge:
         chi_squared += (state.common_shift_m / shift_sigma_m) ** 2
         if self.hand is not None:
             pose, pose_vector, pose_chi_squared = self.hand.information(state.position_m, state.rotation)
-            information[N_SHARED:, N_SHARED:] = pose
-            vector[N_SHARED:] = pose_vector
+            information[-N_POSE:, -N_POSE:] = pose
+            vector[-N_POSE:] = pose_vector
             chi_squared += pose_chi_squared
         position_m, points_information = known.at(state.points_m)
         off = position_m - state.points_m
@@ -156,7 +173,7 @@ class Knowledge:
 
 def linearised_at(measurements: Measurements, knowledge: Knowledge, state: State) -> Linearised | None:
     """The rays' derivatives at a state; None where a point is not in front of the camera."""
-    linearised = empty_linearised(len(measurements.u_px))
+    linearised = empty_linearised(len(measurements.u_px), len(state.sought))
     behind = linearise(
         measurements.u_px,
         state.body_poses(measurements),

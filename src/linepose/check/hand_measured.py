@@ -9,7 +9,7 @@ from linepose.adjustment.start import looks_down, start_points
 from linepose.arrays import Floats
 from linepose.check.finding import Finding, error, numbers, ok, span, warning
 from linepose.check.replay import in_camera
-from linepose.geometry.camera import Camera, pixel_from_normalised
+from linepose.geometry.camera import Camera, off_line, pixel_from_normalised, straight_and_certain
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.survey.observations import Survey
 
@@ -66,14 +66,14 @@ def _points_and_errors(survey: Survey, camera: Camera, pose: Floats) -> tuple[Fl
     """
     measurements = measurements_from_survey(survey, camera)
     if not looks_down(measurements, pose):
-        residuals = PublishedLikelihood(survey, camera).without_cheirality().residuals(pose)
+        residuals = PublishedLikelihood(survey, straight_and_certain(camera)).without_cheirality().residuals(pose)
         return residuals.point_m, residuals.error_px
     point_m = np.full((survey.n_points, 3), np.nan)
     point_m[measurements.points] = start_points(measurements, camera, pose)
     seen = in_camera(pose, survey.position_m, survey.euler_rad, point_m)
     with np.errstate(divide="ignore", invalid="ignore"):
         along = pixel_from_normalised(camera, seen[..., 0] / seen[..., 2]) - survey.u_px
-        across = camera.focal_length_px * seen[..., 1] / seen[..., 2]
+        across = camera.focal_length_px * off_line(camera, seen) / seen[..., 2]
     return point_m, np.hypot(along, across)
 
 

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from linepose.arrays import Floats
-from linepose.geometry.camera import Camera, pixel_from_normalised
+from linepose.geometry.camera import Camera, carried_onto_line, pixel_from_normalised
 from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
 from linepose.survey.observations import Survey
 
@@ -27,15 +27,16 @@ class Crossing(NamedTuple):
 def crossing(camera: Camera, pose: Floats, position_m: Floats, euler_rad: Floats, point_m: Floats) -> Crossing:
     """Where a body at positions (..., 3) with Euler angles (..., 3) sees points (..., 3) after driving on or back.
 
-    `pose` (6,) is the camera in the body frame. The body is moved along its forward axis until v = 0.
+    `pose` (6,) is the camera in the body frame. The body is moved along its forward axis until it sees the point.
     """
     seen_from = in_camera(pose, position_m, euler_rad, point_m)
     ahead = matrix_from_rotation_vector(pose[3:6]).T[:, 0]  # the body's forward axis in the camera
     sweeps = abs(ahead[1]) >= _NEVER_CROSSES
-    step = seen_from[..., 1] / ahead[1] if sweeps else np.zeros_like(seen_from[..., 1])
-    moved = seen_from - step[..., None] * ahead
-    depth = moved[..., 2]
     with np.errstate(divide="ignore", invalid="ignore"):
+        step, moved = (
+            carried_onto_line(camera, seen_from, ahead) if sweeps else (np.zeros_like(seen_from[..., 1]), seen_from)
+        )
+        depth = moved[..., 2]
         u_px = pixel_from_normalised(camera, moved[..., 0] / depth)
     seen = sweeps & (depth > 0) & (u_px >= -0.5) & (u_px <= camera.n_pixels - 0.5)
     forward = matrix_from_euler(euler_rad)[..., :, 0]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Final, Literal, get_args, get_origin
 
 import yaml
 
@@ -105,6 +105,9 @@ def _head(new: NewPlatform) -> list[str]:
     ]
 
 
+_SIGMAS: Final = ("u_px", "v_px", "principal_point_px", "focal_length_m", "k1", "k2")
+
+
 def _camera(new: NewPlatform) -> list[str]:
     middle = (new.n_pixels - 1) / 2
     principal = middle if new.principal_point_px is None else new.principal_point_px
@@ -119,7 +122,7 @@ def _camera(new: NewPlatform) -> list[str]:
         f"  k1: 0.0 # {about['k1']}",
         f"  k2: 0.0 # {about['k2']}",
         f"  sigmas: # {about['sigmas']}",
-        *(f"    {key}: {_number(value)} # {sigma[key]}" for key, value in default.model_dump().items()),
+        *(f"    {key}: {_number(getattr(default, key))} # {sigma[key]}" for key in _SIGMAS),
     ]
 
 

@@ -22,6 +22,7 @@ from linepose.config.map_frame import MapFrameSection
 from linepose.config.names import check_name
 from linepose.config.outline import OutlineSection
 from linepose.config.points import PointsSection
+from linepose.config.view_angles import with_view_angles
 from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, noise_model
@@ -175,6 +176,14 @@ class Platform(Settings):
             raise ValueError(f"source.points: labels with target.kind {self.target.kind}, which has no pattern to find")
         return self
 
+    @model_validator(mode="after")
+    def _has_a_line_as_the_model_has(self) -> "Platform":
+        if noise_model(self.noise_model).removes_outliers and not self.camera.lens.is_straight:
+            raise ValueError(
+                f"noise_model adjustment with a line that is tilted or bent: {self.noise_model} takes it for straight"
+            )
+        return self
+
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""
         return self.camera
@@ -227,7 +236,7 @@ def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:
         raise InputError(f"{path}: like", f"a circle {' -> '.join([*seen, name])}", "an end", "remove one `like`")
     if not path.is_file():
         raise _no_such_platform(path, seen)
-    values = read_yaml(path)
+    values = with_view_angles(read_yaml(path), path)
     parent = values.pop("like", None)
     return values if parent is None else _overlaid(_merged_values(folder, parent, [*seen, name]), values)
 

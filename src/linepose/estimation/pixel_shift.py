@@ -1,15 +1,18 @@
 """How far a pixel's place moves between two cameras on one body, on a surface across the first one's optical axis."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from linepose.arrays import Floats
-from linepose.geometry.camera import Camera, normalised_from_pixel
+from linepose.geometry.camera import Camera, pixel_directions
 from linepose.geometry.rotations import matrix_from_rotation_vector
 
-_STEPS: Final = np.array([1e-4] * 3 + [1e-5] * 3 + [1e-2, 1e-7])  # for derivatives: of a move (m, rad), px, m
+_POSE_STEPS: Final = (1e-4,) * 3 + (1e-5,) * 3  # for derivatives, of a move (m, rad)
+_STEPS: Final = {"principal_point_px": 1e-2, "focal_length_m": 1e-7}  # and of the intrinsics (px, m)
+_COEFFICIENT_STEP: Final = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,34 +39,32 @@ def pixel_shift(first: Mounted, second: Mounted, pixel: float, range_m: float) -
 
 
 def shift_covariance(
-    first: Mounted, second: Mounted, pixel: float, range_m: float, difference_covariance: Floats
+    first: Mounted, second: Mounted, pixel: float, range_m: float, difference_covariance: Floats, names: Sequence[str]
 ) -> Floats:
-    """Covariance (2, 2) of the shift, from that of the difference (8, 8).
+    """Covariance (2, 2) of the shift, from that of the difference (6 + I, 6 + I).
 
-    The difference is that of the poses, m and turn about body axes, of the principal points (px) and the focal lengths
-    (m).
+    The difference is that of the poses, m and turn about body axes, and of the intrinsics that `names` says, I of them.
     """
-    slopes = np.empty((2, len(_STEPS)))
-    for axis, step in enumerate(_STEPS):
-        ends = [pixel_shift(first, _moved(second, sign * step, axis), pixel, range_m) for sign in (1.0, -1.0)]
+    steps = [*_POSE_STEPS, *(_STEPS.get(name, _COEFFICIENT_STEP) for name in names)]
+    slopes = np.empty((2, len(steps)))
+    for axis, step in enumerate(steps):
+        name = names[axis - 6] if axis >= 6 else None
+        ends = [pixel_shift(first, _moved(second, sign * step, axis, name), pixel, range_m) for sign in (1.0, -1.0)]
         slopes[:, axis] = (ends[0] - ends[1]) / (2 * step)
     return slopes @ difference_covariance @ slopes.T
 
 
 def _ray(camera: Camera, pixel: float) -> Floats:
-    return np.array([float(normalised_from_pixel(camera, pixel)), 0.0, 1.0])
+    return pixel_directions(camera, pixel)
 
 
-def _moved(mounted: Mounted, step: float, axis: int) -> Mounted:
-    """The camera after a step along or about one body axis, or of its principal point (px) or focal length (m)."""
+def _moved(mounted: Mounted, step: float, axis: int, name: str | None) -> Mounted:
+    """The camera after a step along or about one body axis, or of the intrinsic of this name."""
     from scipy.spatial.transform import Rotation
 
     camera, pose = mounted.camera, mounted.pose
-    move = step * np.eye(len(_STEPS))[axis]
-    turned = Rotation.from_rotvec(move[3:6]) * Rotation.from_rotvec(pose[3:])
-    return Mounted(
-        camera.replaced(
-            principal_point_px=camera.principal_point_px + move[6], focal_length_m=camera.focal_length_m + move[7]
-        ),
-        np.concatenate([pose[:3] + move[:3], turned.as_rotvec()]),
-    )
+    if name is not None:
+        return Mounted(camera.replaced(**{name: getattr(camera, name) + step}), pose)
+    move = step * np.eye(6)[axis]
+    turned = Rotation.from_rotvec(move[3:]) * Rotation.from_rotvec(pose[3:])
+    return Mounted(camera, np.concatenate([pose[:3] + move[:3], turned.as_rotvec()]))

@@ -29,7 +29,7 @@ from linepose.geometry.camera import Camera
 from linepose.geometry.distance import difference_covariance, pose_difference
 from linepose.survey.observations import Survey
 
-_HELD: Final = 1e-3  # of the sigmas of principal point and focal length, while the views are adjusted
+_HELD: Final = 1e-3  # of the sigmas of the intrinsics, while the views are adjusted
 _TWO_SIDED_95: Final = 2 * 1.959963984540054
 _ANOTHER_DAY: Final = 0.3  # by which the logarithm of a level differs from one survey to the next
 
@@ -76,8 +76,9 @@ def _own_information(covariance: Floats) -> Floats:
 
 
 def _with_intrinsics(found: Adjustment) -> Floats:
-    """Covariance (8, 8) of an adjustment's step of the pose, principal point (px) and focal length (m)."""
-    both = np.empty((8, 8))
+    """Covariance (6 + I, 6 + I) of an adjustment's step of the pose, and of its intrinsics."""
+    size = 6 + len(found.intrinsics_covariance)
+    both = np.empty((size, size))
     both[:6, :6] = difference_covariance(found.pose, found.covariance)
     both[6:, 6:] = found.intrinsics_covariance
     both[:6, 6:] = found.pose_by_intrinsics @ found.intrinsics_covariance
@@ -86,14 +87,11 @@ def _with_intrinsics(found: Adjustment) -> Floats:
 
 
 def _held(camera: Camera, calibrated: Adjustment) -> Camera:
-    """The camera with the calibration's principal point and focal length, which stay as they are."""
-    sigmas = camera.sigmas.replaced(
-        principal_point_px=_HELD * camera.sigmas.principal_point_px,
-        focal_length_m=_HELD * camera.sigmas.focal_length_m,
-    )
-    return camera.replaced(
-        principal_point_px=calibrated.principal_point_px, focal_length_m=calibrated.focal_length_m, sigmas=sigmas
-    )
+    """The camera with the calibration's intrinsics, which stay as they are."""
+    pair = {"principal_point_px": calibrated.principal_point_px, "focal_length_m": calibrated.focal_length_m}
+    values = pair | calibrated.coefficients
+    held = {name: _HELD * getattr(camera.sigmas, name) for name in values}
+    return camera.replaced(**values, sigmas=camera.sigmas.replaced(**held))
 
 
 def _priors(calibrated: Adjustment, priors: LevelPriors) -> LevelPriors:

@@ -139,7 +139,7 @@ def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:
     return {
         "adjustment": table,
         "adjusted_splits": splits,
-        **error_tables(surveys[ALL], found, errors, sets[ALL].settings),
+        **error_tables(surveys[ALL], conditions.camera, found, errors, sets[ALL].settings),
     }
 
 

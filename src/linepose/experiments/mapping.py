@@ -16,7 +16,8 @@ from pydantic import Field, PositiveFloat
 from linepose.arrays import Floats
 from linepose.experiments.experiment import ESTIMATE, Experiment, Section
 from linepose.experiments.inputs import Inputs, log_rows
-from linepose.geometry.camera import Camera, rays, undistort
+from linepose.geometry import lens
+from linepose.geometry.camera import Camera, normalised_from_pixel, rays
 from linepose.geometry.plane import Plane, fit_plane, fit_plane_by_height, intersect
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.rotations import (
@@ -36,7 +37,6 @@ _logger = logging.getLogger(__name__)
 PROJECTED_COLUMNS = ("north_m", "east_m", "down_m")
 _AXES = ("north", "east", "down")
 PROJECTED_COVARIANCE_COLUMNS = tuple(f"covariance_{_AXES[i]}_{_AXES[j]}_m2" for i, j in POSITION_COVARIANCE_INDICES)
-_DISTORTION_STEP = 1e-6  # for derivatives by k1 and k2, of which undistort is a smooth function near 1
 
 MAPPING: Final = pa.schema(
     [
@@ -207,20 +207,21 @@ def _rays(survey: Survey, camera: Camera, pose: Floats) -> tuple[Floats, Floats]
 
 def _normalised_covariance(camera: Camera, u_px: Floats) -> Floats:
     """Covariance (..., 2, 2) of the ray's coordinates in the normalised plane, from pixel and intrinsics."""
-    sigmas, focal_px = camera.sigmas, camera.focal_length_px
+    sigmas, focal_px, optics = camera.sigmas, camera.focal_length_px, camera.lens
+    x = normalised_from_pixel(camera, u_px)
+    names = camera.uncertain_coefficients
+    by_s, by_y = lens.by_coefficients(x, names)
     distorted = (u_px - camera.principal_point_px) / focal_px
-    h = _DISTORTION_STEP
-    k1, k2 = camera.k1, camera.k2
-    by_distorted = (undistort(distorted + h, k1, k2) - undistort(distorted - h, k1, k2)) / (2 * h)
-    by_k1 = (undistort(distorted, k1 + h, k2) - undistort(distorted, k1 - h, k2)) / (2 * h)
-    by_k2 = (undistort(distorted, k1, k2 + h) - undistort(distorted, k1, k2 - h)) / (2 * h)
-    in_pixels = sigmas.u_px**2 + sigmas.principal_point_px**2
-    focal = (distorted * sigmas.focal_length_m / camera.focal_length_m) ** 2
+    slope, bend = 1 / lens.distortion_slope(x, optics), lens.across_slope(x, optics)
+    known = [np.hypot(sigmas.u_px, sigmas.principal_point_px) / focal_px, sigmas.focal_length_m / camera.focal_length_m]
+    of_s = np.stack([np.full_like(x, known[0]), distorted * known[1]], axis=-1)
+    of_each = np.array([getattr(sigmas, name) for name in names])
+    of_s = np.concatenate([of_s, by_s * of_each], axis=-1) * slope[..., None]  # the ray's x by one sigma of each
+    of_y = np.concatenate([np.zeros((*x.shape, 2)), by_y * of_each], axis=-1) + bend[..., None] * of_s
     covariance = np.zeros((*u_px.shape, 2, 2))
-    covariance[..., 0, 0] = (
-        by_distorted**2 * (in_pixels / focal_px**2 + focal) + (by_k1 * sigmas.k1) ** 2 + (by_k2 * sigmas.k2) ** 2
-    )
-    covariance[..., 1, 1] = (sigmas.v_px / focal_px) ** 2
+    covariance[..., 0, 0] = np.sum(of_s**2, axis=-1)
+    covariance[..., 0, 1] = covariance[..., 1, 0] = np.sum(of_s * of_y, axis=-1)
+    covariance[..., 1, 1] = np.sum(of_y**2, axis=-1) + (sigmas.v_px / focal_px) ** 2
     return covariance
 
 

@@ -1,19 +1,35 @@
 """The line-scan camera: from a pixel to a ray and back.
 
-Pixel u counts along the scan line from 0; its centre is at the whole number. The line has v = 0. The normalised
-image plane lies at z = 1 in front of the camera, with x along the scan line. Radial distortion acts on x alone.
+Pixel u counts along the scan line from 0; its centre is at the whole number. The normalised image plane lies at z = 1
+in front of the camera, with x along the scan line and y across it. What the lens does stands in `lens`: the ray of a
+pixel is (x, y, 1), y being zero but for a line that is tilted or bent.
 """
+
+from collections.abc import Mapping
+from typing import Any, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field, NonNegativeFloat, PositiveFloat
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from linepose.arrays import Floats
+from linepose.geometry import lens as lenses
+from linepose.geometry.lens import COEFFICIENTS, Lens
+from linepose.geometry.view_angles import ViewAngles, knots
 from linepose.settings import Settings
+
+_PITCH_M: Final = 1e-5  # where none is given: focal length over pitch is all that counts
+_FOCAL_SHARE: Final = 0.01  # sigma of a focal length that is told by angles
+_ALTERNATIVES: Final = ("focal_length_m", "field_of_view_deg", "view_angles")
+_MOST_CARRIES: Final = 12  # each leaves a share of the bend that is its slope
+_SAME: Final = 1e-6  # of normalised x
+_NO_KNOTS: Final = np.empty(0)
 
 
 class CameraSigmas(Settings):
-    """One standard deviation of each camera quantity; units in the names, k1 and k2 have none.
+    """One standard deviation of each camera quantity; units in the names, coefficients of the lens have none.
+
+    The adjustment estimates the principal point, the focal length, and each coefficient whose sigma is not zero.
 
     Examples
     --------
@@ -25,13 +41,32 @@ class CameraSigmas(Settings):
     u_px: PositiveFloat = Field(0.5, ge=1e-6, le=1e6, description="Of a point's position along the scan line (px).")
     v_px: PositiveFloat = Field(0.5, ge=1e-6, le=1e6, description="Of a point's position across the scan line (px).")
     principal_point_px: NonNegativeFloat = Field(2.0, le=1e6, description="Of the principal point (px).")
-    focal_length_m: NonNegativeFloat = Field(1e-4, le=1e3, description="Of the focal length (m).")
+    focal_length_m: NonNegativeFloat = Field(
+        1e-4,
+        le=1e3,
+        description="Of the focal length (m); 1 % of it where the camera is told by field_of_view_deg or view_angles.",
+    )
+    field_of_view_deg: PositiveFloat | None = Field(
+        None, lt=180, description="In place of focal_length_m: of the field of view (deg)."
+    )
     k1: NonNegativeFloat = Field(0.0, description="Of the first radial distortion coefficient (no unit).")
     k2: NonNegativeFloat = Field(0.0, description="Of the second radial distortion coefficient (no unit).")
+    k3: NonNegativeFloat = Field(0.0, description="Of the third radial distortion coefficient (no unit).")
+    p2: NonNegativeFloat = Field(0.0, description="Of the tangential distortion coefficient (no unit).")
+    tilt: NonNegativeFloat = Field(0.0, description="Of the line's tilt (no unit).")
+    smile: NonNegativeFloat = Field(0.0, description="Of the line's smile (no unit).")
+
+    @model_validator(mode="after")
+    def _has_one_of_the_scale(self) -> Self:
+        if self.field_of_view_deg is not None and "focal_length_m" in self.model_fields_set:
+            raise ValueError("one of focal_length_m and field_of_view_deg")
+        return self
 
 
 class Camera(Settings):
     """Intrinsic parameters of a line-scan camera and how well they are known.
+
+    The focal length is given in metres, or told by the field of view or by a table of view angles.
 
     Examples
     --------
@@ -39,49 +74,187 @@ class Camera(Settings):
     >>> camera = linepose.Camera(focal_length_m=8e-3, pixel_pitch_m=8e-6, n_pixels=640, principal_point_px=319.5)
     >>> round(camera.focal_length_px)
     1000
+    >>> wide = linepose.Camera(field_of_view_deg=90, n_pixels=2000, principal_point_px=999.5)
+    >>> round(wide.focal_length_px)
+    1000
     """
 
-    focal_length_m: PositiveFloat = Field(description="Focal length (m).")
-    pixel_pitch_m: PositiveFloat = Field(description="Width of a pixel on the sensor (m).")
+    focal_length_m: PositiveFloat = Field(description="Focal length (m); or field_of_view_deg, or view_angles.")
+    field_of_view_deg: float | None = Field(
+        None,
+        gt=0,
+        lt=180,
+        description="In place of focal_length_m: angle between the outer edges of the first and last pixel, without "
+        "distortion and about the line's middle (deg).",
+    )
+    view_angles: ViewAngles | None = Field(
+        None,
+        description="In place of focal_length_m and principal_point_px: a CSV beside the platform's file with the view "
+        "angle of each pixel (columns pixel, across_deg, and along_deg where the line is not straight), or these as "
+        "lists.",
+    )
+    pixel_pitch_m: PositiveFloat = Field(
+        description="Width of a pixel on the sensor (m); may be left out with field_of_view_deg or view_angles."
+    )
     n_pixels: int = Field(gt=0, le=1_000_000, description="Pixels of a scan line.")
     principal_point_px: float = Field(
-        description="Where the optical axis meets the line (px from the centre of the first pixel)."
+        description="Where the optical axis meets the line (px from the centre of the first pixel); or view_angles."
     )
     k1: float = Field(0.0, description="First radial distortion coefficient (no unit).")
     k2: float = Field(0.0, description="Second radial distortion coefficient (no unit).")
+    k3: float = Field(0.0, description="Third radial distortion coefficient (no unit).")
+    p2: float = Field(0.0, description="Tangential distortion coefficient along the line, OpenCV's p2 (no unit).")
+    tilt: float = Field(0.0, description="Slope of the line across a straight one (no unit).")
+    smile: float = Field(0.0, description="Bend of the line: y = tilt x + smile x^2 in the normalised plane (no unit).")
     sigmas: CameraSigmas = Field(CameraSigmas(), description="One standard deviation of each.")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_focal_length(cls, values: Any) -> Any:
+        """The focal length in metres, and its sigma, of a camera that is told by angles."""
+        if not isinstance(values, Mapping):
+            return values
+        return _in_metres({name: one for name, one in values.items() if one is not None or name not in _ALTERNATIVES})
+
+    @model_validator(mode="after")
+    def _sees_the_whole_line(self) -> Self:
+        table = self.view_angles
+        if table is not None and not (table.pixel[0] <= 0 and table.pixel[-1] >= self.n_pixels - 1):
+            raise ValueError(f"view_angles from pixel 0 to {self.n_pixels - 1}, as n_pixels has them")
+        return self
 
     @property
     def focal_length_px(self) -> float:
         """Focal length in pixels: what turns a distance in the normalised plane into one in pixels."""
         return self.focal_length_m / self.pixel_pitch_m
 
+    @property
+    def lens(self) -> Lens:
+        """What the lens does to the line."""
+        table = (_NO_KNOTS,) * 5 if self.view_angles is None else knots(self.view_angles)
+        return Lens(self.k1, self.k2, self.k3, self.p2, self.tilt, self.smile, *table)
 
-def undistort(x: ArrayLike, k1: float, k2: float) -> Floats:
-    """Ideal normalised x of a distorted one, in the closed form the paper's authors use; (...) to (...).
+    @property
+    def uncertain_coefficients(self) -> tuple[str, ...]:
+        """Names of the lens's coefficients that are not known exactly."""
+        return tuple(name for name in COEFFICIENTS if getattr(self.sigmas, name) > 0)
 
-    `x / (1 + k1 r^2 + k2 r^4)` with `r = x (1 - k1 x^2 - k2 x^4)`: the inverse of `distort` to second order in k.
-    """
-    x = np.asarray(x, dtype=float)
-    r2 = (x * (1 - k1 * x**2 - k2 * x**4)) ** 2
-    return x / (1 + k1 * r2 + k2 * r2**2)
+    def straightened(self) -> "Camera":
+        """The camera with neither tilt nor bend of its line."""
+        table = self.view_angles and self.view_angles.replaced(along_deg=())
+        sigmas = self.sigmas.replaced(tilt=0.0, smile=0.0)
+        return self.replaced(tilt=0.0, smile=0.0, view_angles=table, sigmas=sigmas)
+
+    def mirrored(self) -> "Camera":
+        """The camera whose pixels are counted from the other end, turned half about its axis."""
+        return self.replaced(
+            principal_point_px=self.n_pixels - 1 - self.principal_point_px,
+            p2=-self.p2,
+            smile=-self.smile,
+            view_angles=self.view_angles and self.view_angles.mirrored(self.n_pixels),
+        )
 
 
-def distort(x: ArrayLike, k1: float, k2: float) -> Floats:
-    """Distorted normalised x of an ideal one, `x (1 + k1 x^2 + k2 x^4)`; (...) to (...)."""
-    x = np.asarray(x, dtype=float)
-    return x * (1 + k1 * x**2 + k2 * x**4)
+def _in_metres(values: dict[str, Any]) -> dict[str, Any]:
+    """A camera's values with the focal length that its field of view, or its table, tells."""
+    by_angle = values.pop("field_of_view_deg", None)
+    table = values.get("view_angles")
+    if by_angle is not None and "focal_length_m" in values:
+        raise ValueError("one of focal_length_m and field_of_view_deg")
+    if by_angle is not None and table is not None:
+        raise ValueError("one of field_of_view_deg and view_angles")
+    is_told = "focal_length_m" not in values and (by_angle is not None or table is not None)
+    if is_told:
+        values = {"pixel_pitch_m": _PITCH_M, "focal_length_m": 1.0} | values
+    try:
+        if by_angle is not None and 0 < float(by_angle) < 180 and not isinstance(by_angle, bool):
+            half_px = int(values["n_pixels"]) / 2
+            values["focal_length_m"] = (
+                half_px / np.tan(np.deg2rad(float(by_angle)) / 2) * float(values["pixel_pitch_m"])
+            )
+        elif by_angle is not None:
+            values["field_of_view_deg"] = by_angle  # whose fault is told
+        elif is_told:
+            table = table if isinstance(table, ViewAngles) else ViewAngles.model_validate(table)
+            values["focal_length_m"] = table.focal_length_px * float(values["pixel_pitch_m"])
+            values = {"principal_point_px": table.principal_point_px} | values
+        values["sigmas"] = _sigmas_in_metres(values, is_told)
+    except (TypeError, ValueError, KeyError):  # of another value, whose fault is told
+        pass
+    return values
+
+
+def _sigmas_in_metres(values: dict[str, Any], is_told: bool) -> Any:
+    """The sigmas with that of the focal length; as they are where they tell it."""
+    given = values.get("sigmas") or {}
+    sigmas = dict(given if isinstance(given, Mapping) else given.model_dump(exclude_unset=True))
+    by_angle = sigmas.pop("field_of_view_deg", None)
+    if by_angle is not None and "focal_length_m" in sigmas:
+        return given
+    focal_px = float(values["focal_length_m"]) / float(values["pixel_pitch_m"])
+    if by_angle is not None:
+        angle = 2 * np.arctan(int(values["n_pixels"]) / 2 / focal_px)
+        sigmas["focal_length_m"] = float(values["focal_length_m"]) * np.deg2rad(float(by_angle)) / np.sin(angle)
+    elif is_told and "focal_length_m" not in sigmas:
+        sigmas["focal_length_m"] = _FOCAL_SHARE * float(values["focal_length_m"])
+    else:
+        return given
+    return sigmas
 
 
 def normalised_from_pixel(camera: Camera, u_px: ArrayLike) -> Floats:
-    """Normalised x of pixels u on the line, distortion removed; (...) to (...)."""
+    """Normalised x of pixels u on the line, distortion removed; (...) to (...), NaN where the lens sees nothing."""
     u = np.asarray(u_px, dtype=float)
-    return undistort((u - camera.principal_point_px) / camera.focal_length_px, camera.k1, camera.k2)
+    return lenses.undistort((u - camera.principal_point_px) / camera.focal_length_px, camera.lens)
 
 
 def pixel_from_normalised(camera: Camera, x: ArrayLike) -> Floats:
-    """Pixel u of normalised x, distortion applied; (...) to (...)."""
-    return distort(x, camera.k1, camera.k2) * camera.focal_length_px + camera.principal_point_px
+    """Pixel u of normalised x, distortion applied; (...) to (...).
+
+    NaN beyond where the lens turns back: far outside the field of view a polynomial falls onto the line again.
+    """
+    lens, ideal = camera.lens, np.asarray(x, dtype=float)
+    with np.errstate(over="ignore", invalid="ignore"):
+        s = lenses.distort(ideal, lens)
+        if not lens.is_ideal:
+            s = np.where(np.abs(lenses.undistort(s, lens) - ideal) < _SAME * (1 + np.abs(ideal)), s, np.nan)
+    return s * camera.focal_length_px + camera.principal_point_px
+
+
+def pixel_directions(camera: Camera, u_px: ArrayLike) -> Floats:
+    """Directions (x, y, 1) of pixels' rays in the camera's axes; (...) to (..., 3)."""
+    x = normalised_from_pixel(camera, u_px)
+    return np.stack([x, lenses.across(x, camera.lens) + np.zeros_like(x), np.ones_like(x)], axis=-1)
+
+
+def off_line(camera: Camera, in_camera: Floats) -> Floats:
+    """How far points (..., 3) in the camera's axes lie off what the line sees, along the camera's y (m); (...)."""
+    lens = camera.lens
+    if lens.is_straight:
+        return in_camera[..., 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return in_camera[..., 1] - in_camera[..., 2] * lenses.across(in_camera[..., 0] / in_camera[..., 2], lens)
+
+
+def carried_onto_line(camera: Camera, in_camera: Floats, ahead: Floats) -> tuple[Floats, Floats]:
+    """How far along a direction (3,) points (..., 3) have to be carried back until the line sees them, and where then.
+
+    All in the camera's axes (m); (...) and (..., 3).
+    """
+    lens = camera.lens
+    step = in_camera[..., 1] / ahead[1]
+    at = in_camera - step[..., None] * ahead
+    for _ in range(0 if lens.is_straight else _MOST_CARRIES):
+        bend = lenses.across(at[..., 0] / at[..., 2], lens)
+        step = (in_camera[..., 1] - bend * in_camera[..., 2]) / (ahead[1] - bend * ahead[2])
+        at = in_camera - step[..., None] * ahead
+    return step, at
+
+
+def straight_and_certain(camera: Camera) -> Camera:
+    """The camera as the paper's equations can have it: a straight line, and sigmas of k1 and k2 alone."""
+    straight = camera.straightened()
+    return straight.replaced(sigmas=straight.sigmas.replaced(k3=0.0, p2=0.0))
 
 
 def rays(
@@ -94,10 +267,9 @@ def rays(
 ) -> tuple[Floats, Floats]:
     """Centres and directions (not of unit length) of pixels' rays in the world; (...) pixels to (..., 3) twice.
 
-    `c = p_wb + R_wb r`, `d = R_wb R_bc [x, 0, 1]` (Eq. 11), with R_wb (..., 3, 3), p_wb (..., 3).
+    `c = p_wb + R_wb r`, `d = R_wb R_bc [x, y, 1]` (Eq. 11), with R_wb (..., 3, 3), p_wb (..., 3).
     """
-    x = normalised_from_pixel(camera, u_px)
-    in_camera = np.stack([x, np.zeros_like(x), np.ones_like(x)], axis=-1)
+    in_camera = pixel_directions(camera, u_px)
     r_wb = np.asarray(body_matrix, dtype=float)
     centres = np.asarray(body_position_m, dtype=float) + r_wb @ np.asarray(lever_arm_m, dtype=float)
     directions = np.einsum("...ij,jk,...k->...i", r_wb, np.asarray(pose_matrix, dtype=float), in_camera)

@@ -7,7 +7,8 @@ import numpy as np
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera
+from linepose.geometry.camera import Camera, normalised_from_pixel
+from linepose.geometry.lens import by_coefficients, distortion_slope
 from linepose.likelihood import layout
 from linepose.likelihood.layout import LANES
 from linepose.survey.observations import Survey
@@ -55,20 +56,26 @@ def body_covariance(euler_rad: Floats, covariance: Floats) -> Floats:
 
 def normalised_by_intrinsics(camera: Camera, u_px: Floats) -> tuple[Floats, Floats, Floats]:
     """Normalised x of pixels, its derivative by u (1/px), and by u0, f, k1, k2; (...) to (...), (...), (..., 4)."""
-    k1, k2 = camera.k1, camera.k2
-    distorted = (u_px - camera.principal_point_px) / camera.focal_length_px
-    r = distorted * (1 - k1 * distorted**2 - k2 * distorted**4)
-    squared = r**2
-    quotient = 1 + k1 * squared + k2 * squared**2
-    quotient_by_r = (k1 + 2 * k2 * squared) * 2 * r
-    by_quotient = -distorted / quotient**2
-    r_by_distorted = 1 - 3 * k1 * distorted**2 - 5 * k2 * distorted**4
-    by_distorted = 1 / quotient + by_quotient * quotient_by_r * r_by_distorted
+    x = normalised_from_pixel(camera, u_px)
+    by_distorted = 1 / distortion_slope(x, camera.lens)
     by_u = by_distorted / camera.focal_length_px
-    by_k1 = by_quotient * (squared - quotient_by_r * distorted**3)
-    by_k2 = by_quotient * (squared**2 - quotient_by_r * distorted**5)
-    by_intrinsics = np.stack([-by_u, -by_distorted * distorted / camera.focal_length_m, by_k1, by_k2], axis=-1)
-    return distorted / quotient, by_u, by_intrinsics
+    distorted = (u_px - camera.principal_point_px) / camera.focal_length_px
+    by_k = -by_distorted[..., None] * by_coefficients(x, ("k1", "k2"))[0]
+    by_pair = np.stack([-by_u, -by_distorted * distorted / camera.focal_length_m], axis=-1)
+    return x, by_u, np.concatenate([by_pair, by_k], axis=-1)
+
+
+def check_straight(camera: Camera) -> None:
+    """Raise InputError for a camera that the paper's equations do not have: another line, or other sigmas.
+
+    Their line is straight; their sigmas are those of principal point, focal length, k1 and k2.
+    """
+    bent = not camera.lens.is_straight
+    other = [name for name in camera.uncertain_coefficients if name not in ("k1", "k2")]
+    if bent or other:
+        found = "tilt, smile, or angles across the line" if bent else f"sigmas of {', '.join(other)}"
+        expected = "none with the paper's noise models, whose scan line is straight"
+        raise InputError("camera", found, expected, "set noise_model: adjustment, or leave these out")
 
 
 def point_origins(survey: Survey, mask: Floats) -> Floats:

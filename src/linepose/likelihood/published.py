@@ -13,7 +13,7 @@ from linepose.likelihood import kernel
 from linepose.likelihood import layout as at
 from linepose.likelihood.base import Likelihood, Residuals
 from linepose.likelihood.layout import LANES
-from linepose.likelihood.prepare import point_origins, survey_rows, usable
+from linepose.likelihood.prepare import check_straight, point_origins, survey_rows, usable
 from linepose.survey.observations import Survey
 
 _COVARIANCE = (at.E_NN, at.E_NE, at.E_ND, at.E_NE, at.E_EE, at.E_ED, at.E_ND, at.E_ED, at.E_DD)
@@ -28,6 +28,7 @@ class PublishedLikelihood(Likelihood):
     """
 
     def __init__(self, survey: Survey, camera: Camera, max_behind_camera: float = 0.0) -> None:
+        check_straight(camera)
         self.survey = survey
         self.camera = camera
         self._max_behind_camera = max_behind_camera

@@ -1,4 +1,4 @@
-"""Principal point and focal length as an adjustment found them: they belong to its pose, and err together with it."""
+"""The intrinsics as an adjustment found them: they belong to its pose, and err together with it."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -9,51 +9,82 @@ import pyarrow as pa
 
 from linepose.arrays import Floats
 from linepose.geometry.camera import Camera
-from linepose.geometry.pose import N_PARAMETERS
-from linepose.tables import floats
+from linepose.geometry.lens import COEFFICIENTS
+from linepose.tables import floats, optional_floats, texts
 
-_PAIR: Final = ("principal_point_px", "focal_length_m")
-_COVARIANCE: Final = ("variance_principal_point_px2", "covariance_px_m", "variance_focal_length_m2")
-_STEPS: Final = ("forward_m", "right_m", "down_m", "turn_x_rad", "turn_y_rad", "turn_z_rad")
-_BY: Final = tuple(f"{step}_by_{name}" for step in _STEPS for name in _PAIR)
+ALWAYS: Final = ("principal_point_px", "focal_length_m")
+NAMES: Final = (*ALWAYS, *COEFFICIENTS)
+TOLD: Final = 0.5  # of the prior's sigma, below which the survey has told an intrinsic
+_COVARIANCE: Final = tuple(f"covariance_with_{name}" for name in NAMES)
+_BY: Final = tuple(
+    f"{step}_by_one" for step in ("forward_m", "right_m", "down_m", "turn_x_rad", "turn_y_rad", "turn_z_rad")
+)
 
-INTRINSICS: Final = pa.schema(floats(*_PAIR, *_COVARIANCE, *_BY))
+INTRINSICS: Final = pa.schema(
+    [
+        *texts("parameter"),
+        *floats("value", "sigma", "prior", "prior_sigma"),
+        *optional_floats(*_COVARIANCE),
+        *floats(*_BY),
+    ]
+)
 
 
 @dataclass(frozen=True, eq=False)
 class AdjustedIntrinsics:
-    """Principal point (px) and focal length (m) that belong to an adjusted pose.
+    """Principal point (px), focal length (m), and estimated coefficients of the lens, that belong to an adjusted pose.
 
-    `covariance` (2, 2): of the two; `pose_by_intrinsics` (6, 2): how the pose's estimate, position (m) and small turn
-    about body axes (rad), follows them.
+    `names` of all I; `estimate` (I,); `covariance` (I, I); `pose_by_intrinsics` (6, I): how the pose's estimate,
+    position (m) and small turn about body axes (rad), follows them; `prior`, `prior_sigma` (I,): the platform's file.
     """
 
-    principal_point_px: float
-    focal_length_m: float
+    names: tuple[str, ...]
+    estimate: Floats
     covariance: Floats
     pose_by_intrinsics: Floats
+    prior: Floats
+    prior_sigma: Floats
 
     @property
     def with_pose(self) -> Floats:
-        """Covariance (6, 2) of the pose, position and small turn about body axes, with the two."""
+        """Covariance (6, I) of the pose, position and small turn about body axes, with the intrinsics."""
         return self.pose_by_intrinsics @ self.covariance
 
+    @property
+    def sigma(self) -> Floats:
+        """One standard deviation of each (I,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def is_told(self) -> np.ndarray:
+        """Whether the survey told each (I,): the sigma is less than `TOLD` of the prior's."""
+        return self.sigma < TOLD * self.prior_sigma
+
     def camera(self, given: Camera) -> Camera:
-        """The camera of a platform's file with these two in place of the file's."""
-        return given.replaced(principal_point_px=self.principal_point_px, focal_length_m=self.focal_length_m)
+        """The camera of a platform's file with these in place of the file's."""
+        return given.replaced(**dict(zip(self.names, map(float, self.estimate), strict=True)))
 
 
 def intrinsics_table(found: AdjustedIntrinsics) -> pd.DataFrame:
-    """One row: the two, their covariance, and how the pose follows them; columns as in `INTRINSICS`."""
-    (of_centre, of_both), (_, of_focal) = found.covariance
-    values = [found.principal_point_px, found.focal_length_m, of_centre, of_both, of_focal]
-    return pd.DataFrame([[*values, *found.pose_by_intrinsics.ravel()]], columns=INTRINSICS.names)
+    """A row an intrinsic, in its own unit: value, prior, covariances, how the pose follows; columns of `INTRINSICS`."""
+    rows = []
+    for i, name in enumerate(found.names):
+        covariance = dict(zip(found.names, found.covariance[i], strict=True))
+        known = [found.estimate[i], found.sigma[i], found.prior[i], found.prior_sigma[i]]
+        others = [covariance.get(other, np.nan) for other in NAMES]
+        rows.append([name, *known, *others, *found.pose_by_intrinsics[:, i]])
+    return pd.DataFrame(rows, columns=INTRINSICS.names)
 
 
 def intrinsics_from_table(table: pd.DataFrame) -> AdjustedIntrinsics:
     """What `intrinsics_table` has written."""
-    row = table.iloc[0]
-    of_centre, of_both, of_focal = row[list(_COVARIANCE)].to_numpy(dtype=float)
-    by = row[list(_BY)].to_numpy(dtype=float).reshape(N_PARAMETERS, len(_PAIR))
-    centre, focal = (float(row[name]) for name in _PAIR)
-    return AdjustedIntrinsics(centre, focal, np.array([[of_centre, of_both], [of_both, of_focal]]), by)
+    names = tuple(str(name) for name in table["parameter"])
+    covariance = table[[f"covariance_with_{name}" for name in names]].to_numpy(dtype=float)
+    return AdjustedIntrinsics(
+        names,
+        table["value"].to_numpy(dtype=float),
+        covariance,
+        table[list(_BY)].to_numpy(dtype=float).T,
+        table["prior"].to_numpy(dtype=float),
+        table["prior_sigma"].to_numpy(dtype=float),
+    )

@@ -13,9 +13,10 @@ from linepose.adjustment.settings import AdjustmentSection
 from linepose.arrays import Floats
 from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.diagnostics import split_r_hat
+from linepose.geometry.camera import Camera
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Residuals
-from linepose.pipeline.adjusted_intrinsics import AdjustedIntrinsics, intrinsics_table
+from linepose.pipeline.adjusted_intrinsics import ALWAYS, AdjustedIntrinsics, intrinsics_table
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, NORMALISED_COLUMNS, STAGE
 from linepose.pipeline.residual_tables import point_rows, residual_rows
 from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS
@@ -41,16 +42,16 @@ def adjusted_tables(estimator: AdjustmentEstimator, seed: int) -> dict[str, pd.D
         "pose": _poses(survey, found, hand),
         "residuals": residual_rows(STAGE, survey, errors),
         "estimated_points": point_rows(STAGE, survey, errors),
-        **error_tables(survey, found, errors, estimator.settings),
+        **error_tables(survey, estimator.camera, found, errors, estimator.settings),
     }
 
 
 def error_tables(
-    survey: Survey, found: Adjustment, errors: Residuals, settings: AdjustmentSection
+    survey: Survey, camera: Camera, found: Adjustment, errors: Residuals, settings: AdjustmentSection
 ) -> dict[str, pd.DataFrame]:
     """What the errors were: levels, intrinsics, and each view's and each measurement's corrections and weight."""
     return {
-        "adjusted_intrinsics": intrinsics_table(_intrinsics(found)),
+        "adjusted_intrinsics": intrinsics_table(_intrinsics(found, camera)),
         "levels": level_table(found, settings),
         "adjusted_views": view_table(survey, found, errors),
         "adjusted_measurements": measurement_table(survey, found),
@@ -106,9 +107,15 @@ def measurement_table(survey: Survey, found: Adjustment) -> pd.DataFrame:
     )
 
 
-def _intrinsics(found: Adjustment) -> AdjustedIntrinsics:
+def _intrinsics(found: Adjustment, camera: Camera) -> AdjustedIntrinsics:
+    names = (*ALWAYS, *found.coefficients)
     return AdjustedIntrinsics(
-        found.principal_point_px, found.focal_length_m, found.intrinsics_covariance, found.pose_by_intrinsics
+        names,
+        np.array([found.principal_point_px, found.focal_length_m, *found.coefficients.values()]),
+        found.intrinsics_covariance,
+        found.pose_by_intrinsics,
+        np.array([getattr(camera, name) for name in names]),
+        np.array([getattr(camera.sigmas, name) for name in names]),
     )
 
 

@@ -18,6 +18,7 @@ from linepose.estimation.pose_change import (
     covariance_of_difference,
 )
 from linepose.geometry.distance import check_covariance, difference_covariance, pose_difference
+from linepose.pipeline.adjusted_intrinsics import NAMES
 from linepose.pipeline.calibration import HAND_MEASURED, Calibration
 
 
@@ -106,22 +107,24 @@ def compare(first: Calibration, second: Calibration, range_m: float) -> Comparis
         pose_difference(second.pose, first.pose),
         total,
         range_m,
-        _pixels(mounted[0], mounted[1], range_m, _with_intrinsics(total, first, second)),
+        _pixels(mounted[0], mounted[1], range_m, *_with_intrinsics(total, first, second)),
         shared,
         _n_shared_measurements(first, second),
     )
 
 
-def _with_intrinsics(covariance: Floats, first: Calibration, second: Calibration) -> Floats:
-    """Covariance (8, 8) of the difference of pose, principal point (px) and focal length (m), given the pose's."""
-    whole = np.zeros((8, 8))
+def _with_intrinsics(covariance: Floats, first: Calibration, second: Calibration) -> tuple[Floats, tuple[str, ...]]:
+    """Covariance (6 + I, 6 + I) of the difference of pose and of intrinsics, given the pose's; with these's names."""
+    estimated = [one for one in (first.intrinsics, second.intrinsics) if one is not None]
+    names = tuple(name for name in NAMES if any(name in one.names for one in estimated))
+    whole = np.zeros((6 + len(names), 6 + len(names)))
     whole[:6, :6] = covariance
-    for one in (first.intrinsics, second.intrinsics):
-        if one is not None:
-            whole[6:, 6:] += one.covariance
-            whole[:6, 6:] += one.with_pose
+    for one in estimated:
+        at = [6 + names.index(name) for name in one.names]
+        whole[np.ix_(at, at)] += one.covariance
+        whole[:6, at] += one.with_pose
     whole[6:, :6] = whole[:6, 6:].T
-    return whole
+    return whole, names
 
 
 def _n_shared_measurements(first: Calibration, second: Calibration) -> int:
@@ -142,12 +145,14 @@ def _same(one: Floats | None, other: Floats | None) -> bool:
     return one is not None and other is not None and bool(np.array_equal(one, other))
 
 
-def _pixels(first: Mounted, second: Mounted, range_m: float, covariance: Floats) -> pd.DataFrame:
+def _pixels(
+    first: Mounted, second: Mounted, range_m: float, covariance: Floats, names: tuple[str, ...]
+) -> pd.DataFrame:
     last = first.camera.n_pixels - 1
     rows = {}
     for place, pixel in (("first", 0.0), ("centre", last / 2), ("last", float(last))):
         along, across = pixel_shift(first, second, pixel, range_m)
-        variance = np.diag(shift_covariance(first, second, pixel, range_m, covariance))
+        variance = np.diag(shift_covariance(first, second, pixel, range_m, covariance, names))
         sigma = np.sqrt(np.maximum(variance, 0.0))
         rows[place] = {
             "along_m": along,

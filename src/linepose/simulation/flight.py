@@ -8,6 +8,7 @@ import numpy as np
 from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.simulation.drawn_camera import drawn_camera
 from linepose.simulation.flight_layouts import CROSSED, Strip
 from linepose.simulation.navigation_error import navigation_errors
 from linepose.simulation.settings import NavigationErrorSettings, ReportedSettings
@@ -78,7 +79,7 @@ class Flight:
     """What a flight records, and the truth behind it.
 
     survey: M points in N strips, without any hint of what is wrong; camera, hand_pose (6,), hand_covariance (6, 6): as
-    they are believed to be; line_period_s; pose (6,), points_m (M, 3), principal_point_px, focal_length_m: the truth;
+    they are believed to be; line_period_s; pose (6,), points_m (M, 3), true_camera: the truth;
     wrong (M,): points with bad matches.
     """
 
@@ -89,24 +90,20 @@ class Flight:
     line_period_s: float
     pose: Floats
     points_m: Floats
-    principal_point_px: float
-    focal_length_m: float
+    true_camera: Camera
     wrong: np.ndarray
 
 
-def simulate_flight(settings: FlightSettings, seed: int | np.random.Generator) -> Flight:
+def simulate_flight(
+    settings: FlightSettings, seed: int | np.random.Generator, camera: Camera = FLIGHT_CAMERA
+) -> Flight:
     """A flight; the same seed repeats every number."""
     random = np.random.default_rng(seed)
-    camera = FLIGHT_CAMERA
     by_hand = np.concatenate([[0.15, 0.05, 0.10], rotations.rotation_vector_from_matrix(NADIR)])
     turn = rotations.matrix_from_rotation_vector(settings.turn_sigma_rad * random.standard_normal(3))
     lever = by_hand[:3] + settings.lever_sigma_m * random.standard_normal(3)
     pose = np.concatenate([lever, rotations.rotation_vector_from_matrix(turn @ NADIR)])
-    off = random.standard_normal(2)
-    true_camera = camera.replaced(
-        principal_point_px=camera.principal_point_px + off[0] * camera.sigmas.principal_point_px,
-        focal_length_m=camera.focal_length_m + off[1] * camera.sigmas.focal_length_m,
-    )
+    true_camera = drawn_camera(camera, 1.0, random)
     motion = StripMotion.drawn(settings.strips, settings.speed_m_s, settings.turn_s, random)
     points = points_below(settings, random)
     time_s, u_px = crossing_times(motion, true_camera, pose, points)
@@ -145,8 +142,7 @@ def simulate_flight(settings: FlightSettings, seed: int | np.random.Generator) -
         settings.line_period_s,
         pose,
         points,
-        true_camera.principal_point_px,
-        true_camera.focal_length_m,
+        true_camera,
         wrong,
     )
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, normalised_from_pixel
+from linepose.geometry.camera import Camera, pixel_directions
 from linepose.simulation.flight_section import FlightSection
 from linepose.simulation.strip_motion import StripMotion
 from linepose.simulation.textured_ground import TexturedGround, down_at, reflectance_at, textured_ground
@@ -68,12 +68,13 @@ def light_of_strip(camera: Camera, flight: TrueFlight, strip: int) -> NDArray[np
     centre = body[:, :3] + matrix @ flight.pose[:3]
     matrix = matrix @ rotations.matrix_from_rotation_vector(flight.pose[3:])
     shape = at_s.shape
-    u_px = np.arange(camera.n_pixels)[:, None] + moments
+    rays = pixel_directions(camera, np.arange(camera.n_pixels)[:, None] + moments)
     ground = flight.ground
     return _collected(
         centre.reshape(*shape, 3),
         matrix.reshape(*shape, 3, 3),
-        normalised_from_pixel(camera, u_px),
+        np.ascontiguousarray(rays[..., 0]),
+        np.ascontiguousarray(rays[..., 1]),
         ground.waves,
         ground.grain_m,
         ground.contrast,
@@ -87,13 +88,14 @@ def _collected(
     centres: Floats,
     matrices: Floats,
     x: Floats,
+    y: Floats,
     waves: Floats,
     grain_m: float,
     contrast: float,
     rows_m: float,
     seed: int,
 ) -> NDArray[np.float32]:
-    """Mean light (L, P); centres (L, T, 3), matrices (L, T, 3, 3), x (P, S) of the samples along the line."""
+    """Mean light (L, P); centres (L, T, 3), matrices (L, T, 3, 3), x and y (P, S) of the samples' rays."""
     n_lines, n_moments = centres.shape[:2]
     n_pixels, n_samples = x.shape
     light = np.empty((n_lines, n_pixels), dtype=np.float32)
@@ -104,9 +106,9 @@ def _collected(
             for moment in range(n_moments):
                 c, m = centres[line, moment], matrices[line, moment]
                 for k in range(n_samples):
-                    north = m[0, 0] * x[pixel, k] + m[0, 2]
-                    east = m[1, 0] * x[pixel, k] + m[1, 2]
-                    ahead = m[2, 0] * x[pixel, k] + m[2, 2]
+                    north = m[0, 0] * x[pixel, k] + m[0, 1] * y[pixel, k] + m[0, 2]
+                    east = m[1, 0] * x[pixel, k] + m[1, 1] * y[pixel, k] + m[1, 2]
+                    ahead = m[2, 0] * x[pixel, k] + m[2, 1] * y[pixel, k] + m[2, 2]
                     if moment == 0 and k == 0:  # its samples lie so near that they share a height
                         for _ in range(_STEPS):
                             depth = (down - c[2]) / ahead

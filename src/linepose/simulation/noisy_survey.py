@@ -1,8 +1,8 @@
 """Surveys whose noise is known, drawn from a platform's simulated drive: what the coverage study estimates poses from.
 
 The drive, the board, the noise of points and the reported covariances are the platform's. What is drawn for each survey
-besides: navigation errors of given levels, in units of the reported sigmas; and the camera's true principal point and
-focal length, in units of the camera's sigmas.
+besides: navigation errors of given levels, in units of the reported sigmas; and the camera's true intrinsics, in units
+of the camera's sigmas.
 """
 
 from dataclasses import replace
@@ -11,6 +11,7 @@ import numpy as np
 
 from linepose.arrays import Floats
 from linepose.geometry.camera import Camera
+from linepose.simulation.drawn_camera import drawn_camera
 from linepose.simulation.noise_levels import NoiseLevels
 from linepose.simulation.settings import NavigationErrorSettings, SimulationSettings
 from linepose.simulation.survey import faulty_observations, simulate_survey
@@ -29,11 +30,7 @@ def draw_survey(
 
     Without the observations that carry a planted fault, unless `with_faults`.
     """
-    deviation = levels.intrinsics_level * random.standard_normal(2)
-    true_camera = camera.replaced(
-        principal_point_px=camera.principal_point_px + deviation[0] * camera.sigmas.principal_point_px,
-        focal_length_m=camera.focal_length_m + deviation[1] * camera.sigmas.focal_length_m,
-    )
+    true_camera = drawn_camera(camera, levels.intrinsics_level, random)
     survey, truth = simulate_survey(true_camera, _with_levels(settings, levels), random)
     if not with_faults:
         faulty = set(faulty_observations(settings))

@@ -11,7 +11,7 @@ import numpy as np
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, pixel_from_normalised
+from linepose.geometry.camera import Camera, carried_onto_line, pixel_from_normalised
 from linepose.simulation.flight import FlightSettings, points_below, thinned
 from linepose.simulation.settings import ReportedSettings
 from linepose.simulation.strip_motion import StripMotion
@@ -100,7 +100,6 @@ def _ahead(camera: Camera, pose: Floats, body: Floats, points_m: Floats) -> tupl
     camera_in_body = rotations.matrix_from_rotation_vector(pose[3:])
     in_camera, ahead = in_body @ camera_in_body, camera_in_body[0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        way = in_camera[..., 1] / ahead[1]
-        at = in_camera - way[..., None] * ahead
+        way, at = carried_onto_line(camera, in_camera, ahead)
         u_px = pixel_from_normalised(camera, at[..., 0] / at[..., 2])
     return way, np.where(at[..., 2] > 0, u_px, np.nan)

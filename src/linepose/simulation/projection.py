@@ -5,18 +5,16 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import elementwise
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, distort, undistort
+from linepose.geometry.camera import Camera, off_line, pixel_from_normalised
 from linepose.simulation.board import world_points
 from linepose.simulation.settings import SimulationSettings
 from linepose.simulation.trajectory import body_poses, schedule
 
 _N_BRACKETS: Final = 64  # a point crosses the line once in a pass; this finds the crossing on uneven ground
-_DISTORTION_STEPS: Final = 20
 _STEP_S: Final = 1e-4  # for the rate at a crossing
 
 
@@ -46,34 +44,25 @@ def exact_projections(camera: Camera, settings: SimulationSettings) -> Truth:
     pose = np.array(settings.true_pose)
     edges = np.linspace(times.start_s, times.end_s, _N_BRACKETS + 1, axis=1)  # (N, K + 1)
     in_camera = _in_camera(settings, edges[:, :, None], points)  # (N, K + 1, M, 3)
-    across, ahead = in_camera[..., 1], in_camera[..., 2] > 0
+    across, ahead = off_line(camera, in_camera), in_camera[..., 2] > 0
     crossing = (np.sign(across[:, 1:]) != np.sign(across[:, :-1])) & ahead[:, 1:] & ahead[:, :-1]
     row, column = np.nonzero(np.any(crossing, axis=1))
     bracket = np.argmax(crossing, axis=1)[row, column]
     root = elementwise.find_root(
-        lambda time, *point: _in_camera(settings, time, np.stack(point, axis=-1))[..., 1],
+        lambda time, *point: off_line(camera, _in_camera(settings, time, np.stack(point, axis=-1))),
         (edges[row, bracket], edges[row, bracket + 1]),
         args=tuple(points[column].T),
     ).x
     at_root = _in_camera(settings, root, points[column])
-    u = pixel_of_direction(camera, at_root[..., 0] / at_root[..., 2])
+    u = pixel_from_normalised(camera, at_root[..., 0] / at_root[..., 2])
     inside = (u >= -0.5) & (u <= camera.n_pixels - 0.5)
     around = _in_camera(settings, root[:, None] + [-_STEP_S, _STEP_S], points[column][:, None])
-    rate = camera.focal_length_px * np.diff(around[..., 1] / around[..., 2])[:, 0] / (2 * _STEP_S)
+    rate = camera.focal_length_px * np.diff(off_line(camera, around) / around[..., 2])[:, 0] / (2 * _STEP_S)
     time_s, u_px, v_px_s = np.full((3, len(times.start_s), len(points)), np.nan)
     for grid, values in ((time_s, root), (u_px, u), (v_px_s, rate)):
         grid[row[inside], column[inside]] = values[inside]
     position, euler = body_poses(settings, np.where(np.isfinite(time_s), time_s, times.middle_s[:, None]))
     return Truth(pose, points, time_s, u_px, v_px_s, position, euler)
-
-
-def pixel_of_direction(camera: Camera, x: ArrayLike) -> Floats:
-    """Pixel u whose ray has normalised x, the exact inverse of `camera.normalised_from_pixel`; (...) to (...)."""
-    ideal = np.asarray(x, dtype=float)
-    distorted = distort(ideal, camera.k1, camera.k2)
-    for _ in range(_DISTORTION_STEPS if camera.k1 or camera.k2 else 0):
-        distorted = distorted - (undistort(distorted, camera.k1, camera.k2) - ideal)
-    return distorted * camera.focal_length_px + camera.principal_point_px
 
 
 def _in_camera(settings: SimulationSettings, time_s: Floats, points: Floats) -> Floats:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, undistort
+from linepose.geometry.camera import Camera, pixel_directions
 from linepose.simulation import scene
 from linepose.simulation.board import PRINT_CELL_M, print_of
 from linepose.simulation.faults import missing
@@ -66,8 +66,7 @@ def render(camera: Camera, settings: SimulationSettings, observation: int) -> Ex
     light = _collected_light(
         centres,
         matrices,
-        _sampled_x(camera, sampled_u),
-        sampled_v,
+        *_sampled(camera, sampled_u, sampled_v),
         missing(settings)[observation - 1],
         print_of(settings.board),
         np.array([image.dark_reflectance, image.bright_reflectance]),
@@ -90,10 +89,11 @@ def _turned_grid(n: int) -> Floats:
     return np.stack([i + (j + 0.5) / n, j + (n - i - 0.5) / n]) / n - 0.5
 
 
-def _sampled_x(camera: Camera, sampled_u: Floats) -> Floats:
-    """Normalised x of each pixel's samples, which are off its centre by (n,); (S, n)."""
-    x = (np.arange(camera.n_pixels) - camera.principal_point_px) / camera.focal_length_px
-    return undistort(x[:, None] + sampled_u, camera.k1, camera.k2)
+def _sampled(camera: Camera, sampled_u: Floats, sampled_v: Floats) -> tuple[Floats, Floats]:
+    """Normalised x and y of each pixel's samples, which are off its centre by (n,) along and across; (S, n) twice."""
+    pixels = np.arange(camera.n_pixels)[:, None] + sampled_u * camera.focal_length_px
+    rays = pixel_directions(camera, pixels)
+    return np.ascontiguousarray(rays[..., 0]), rays[..., 1] + sampled_v
 
 
 def _camera_in_board(settings: SimulationSettings, time_s: Floats) -> tuple[Floats, Floats]:
@@ -111,7 +111,7 @@ def _collected_light(
     centres: Floats,
     matrices: Floats,
     sampled_x: Floats,
-    sampled_v: Floats,
+    sampled_y: Floats,
     missing_points: NDArray[np.bool_],
     white: NDArray[np.bool_],
     sheet: Floats,
@@ -120,7 +120,7 @@ def _collected_light(
     gradient: Floats,
     seed: int,
 ) -> NDArray[np.float32]:
-    """Mean light of each pixel; centres (L, T, 3), matrices (L, T, 3, 3), samples x (S, n) and v (n,) to (L, S)."""
+    """Mean light of each pixel; centres (L, T, 3), matrices (L, T, 3, 3), samples x and y (S, n) to (L, S)."""
     n_lines, n_moments = centres.shape[:2]
     n_pixels, n_samples = sampled_x.shape
     light = np.empty((n_lines, n_pixels), dtype=np.float32)
@@ -130,10 +130,10 @@ def _collected_light(
             for moment in range(n_moments):
                 c, m = centres[line, moment], matrices[line, moment]
                 for k in range(n_samples):
-                    x, v = sampled_x[pixel, k], sampled_v[k]
-                    dx = m[0, 0] * x + m[0, 1] * v + m[0, 2]
-                    dy = m[1, 0] * x + m[1, 1] * v + m[1, 2]
-                    dz = m[2, 0] * x + m[2, 1] * v + m[2, 2]
+                    x, y = sampled_x[pixel, k], sampled_y[pixel, k]
+                    dx = m[0, 0] * x + m[0, 1] * y + m[0, 2]
+                    dy = m[1, 0] * x + m[1, 1] * y + m[1, 2]
+                    dz = m[2, 0] * x + m[2, 1] * y + m[2, 2]
                     total += _seen(c, dx, dy, dz, missing_points, white, sheet, ground, backdrop_m, gradient, seed)
             light[line, pixel] = total / (n_moments * n_samples)
     return light

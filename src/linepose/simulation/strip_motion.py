@@ -8,7 +8,7 @@ import numpy as np
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, pixel_from_normalised
+from linepose.geometry.camera import Camera, off_line, pixel_from_normalised
 from linepose.simulation.flight_layouts import Strip
 
 _SWINGS: Final = 3  # sinusoids on each axis
@@ -77,8 +77,8 @@ def crossing_times(motion: StripMotion, camera: Camera, pose: Floats, points_m: 
     time_s = motion.start_s[strip] + motion.duration_s[strip] / 2
 
     def across(at_s: Floats) -> Floats:
-        """How far points lie off the plane that the line sees (m)."""
-        return _in_camera(motion.body_poses(strip, at_s), pose, points)[:, 1]
+        """How far points lie off what the line sees (m)."""
+        return off_line(camera, _in_camera(motion.body_poses(strip, at_s), pose, points))
 
     for _ in range(_ITERATIONS):
         rate = (across(time_s + _DIFFERENCE_S) - across(time_s - _DIFFERENCE_S)) / (2 * _DIFFERENCE_S)
@@ -86,7 +86,7 @@ def crossing_times(motion: StripMotion, camera: Camera, pose: Floats, points_m: 
     in_camera = _in_camera(motion.body_poses(strip, time_s), pose, points)
     u = pixel_from_normalised(camera, in_camera[:, 0] / in_camera[:, 2])
     since = time_s - motion.start_s[strip]
-    seen = (in_camera[:, 2] > 0) & (np.abs(in_camera[:, 1]) < _ON_THE_LINE * in_camera[:, 2])
+    seen = (in_camera[:, 2] > 0) & (np.abs(off_line(camera, in_camera)) < _ON_THE_LINE * in_camera[:, 2])
     seen &= (since >= 0) & (since <= motion.duration_s[strip]) & (u > 0) & (u < camera.n_pixels - 1)
     return np.where(seen, time_s, np.nan).reshape(n, m), np.where(seen, u, np.nan).reshape(n, m)
 

@@ -65,8 +65,8 @@ class PlainProblem:
             float(start.principal_point_px + camera[6]),
             float(start.focal_length_m + camera[7]),
             file.pixel_pitch_m,
-            file.k1,
-            file.k2,
+            file.lens,
+            np.empty(0, dtype=np.int64),
         )
         out = empty_linearised(1)
         body = (m.body_pose[line] + correction)[None]

@@ -57,8 +57,9 @@ def test_camera_is_the_files_with_the_papers_sigmas(folder):
 
 def test_sigmas_reach_the_camera(folder):
     sigmas = {"u_px": 1.0, "v_px": 2.0, "principal_point_px": 3.0, "focal_length_m": 4.0, "k1": 5.0, "k2": 6.0}
+    sigmas |= {"k3": 7.0, "p2": 8.0, "tilt": 9.0, "smile": 10.0}
     camera = load_platform(folder("robot", changed("camera.sigmas", sigmas)), "robot").intrinsics()
-    assert vars(camera.sigmas) == sigmas
+    assert vars(camera.sigmas) == sigmas | {"field_of_view_deg": None}
 
 
 def test_start_pose_is_the_tape_measures(folder):
@@ -137,8 +138,8 @@ def test_missing_like_is_named(folder):
         (
             "camera.n_pixel",
             640,
-            "found an unknown key, expected one of focal_length_m, pixel_pitch_m, n_pixels, principal_point_px, "
-            "k1, k2, sigmas; did you mean n_pixels?",
+            "found an unknown key, expected one of focal_length_m, field_of_view_deg, view_angles, pixel_pitch_m, "
+            "n_pixels, principal_point_px, k1, k2, k3, p2, tilt, smile, sigmas; did you mean n_pixels?",
         ),
         ("camera.focal_length_m", -8e-3, "found -0.008, expected greater than 0; correct the value"),
         ("camera.k1", float("nan"), "found nan, expected a finite number; correct the value"),

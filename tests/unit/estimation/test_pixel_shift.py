@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from linepose.estimation.pixel_shift import Mounted, pixel_shift, shift_covariance
 from linepose.geometry.camera import Camera
 
+NAMES = ("principal_point_px", "focal_length_m")
 CAMERA = Camera(focal_length_m=8e-3, pixel_pitch_m=8e-6, n_pixels=601, principal_point_px=300.0)  # 1000 px
 FIRST = Mounted(CAMERA, np.zeros(6))  # body axes are those of the camera
 RANGE_M = 10.0
@@ -47,14 +48,14 @@ def test_a_ray_that_misses_the_surface_has_no_place():
 
 def test_sigma_at_the_centre_is_that_of_shift_and_turn():
     covariance = np.diag([0.01, 0.02, 0.0, 1e-3, 2e-3, 0.0, 0.0, 0.0]) ** 2
-    found = shift_covariance(FIRST, Mounted(CAMERA, np.zeros(6)), 300.0, RANGE_M, covariance)
+    found = shift_covariance(FIRST, Mounted(CAMERA, np.zeros(6)), 300.0, RANGE_M, covariance, NAMES)
     assert_allclose(np.sqrt(np.diag(found)), [np.hypot(0.01, 0.02), np.hypot(0.02, 0.01)], rtol=1e-5)
 
 
 def test_what_principal_point_and_turn_do_in_opposite_ways_cancels():
     """A turn about y by 1e-3 moves the centre as a principal point 1 px less does."""
     errors = np.array([0, 0, 0, 0, 1e-3, 0, 1.0, 0])
-    found = shift_covariance(FIRST, Mounted(CAMERA, np.zeros(6)), 300.0, RANGE_M, np.outer(errors, errors))
+    found = shift_covariance(FIRST, Mounted(CAMERA, np.zeros(6)), 300.0, RANGE_M, np.outer(errors, errors), NAMES)
     assert_allclose(found, np.zeros((2, 2)), atol=1e-12)
-    alone = shift_covariance(FIRST, Mounted(CAMERA, np.zeros(6)), 300.0, RANGE_M, np.diag(errors**2))
+    alone = shift_covariance(FIRST, Mounted(CAMERA, np.zeros(6)), 300.0, RANGE_M, np.diag(errors**2), NAMES)
     assert_allclose(np.sqrt(alone[0, 0]), np.sqrt(2) * 1e-3 * RANGE_M, rtol=1e-5)

@@ -1,34 +1,97 @@
 import numpy as np
-from scipy.optimize import brentq
+import pytest
 from scipy.spatial.transform import Rotation
 
-from linepose.geometry.camera import distort, normalised_from_pixel, pixel_from_normalised, rays, undistort
+from linepose.errors import InputError
+from linepose.geometry.camera import (
+    Camera,
+    carried_onto_line,
+    normalised_from_pixel,
+    off_line,
+    pixel_directions,
+    pixel_from_normalised,
+    rays,
+)
 
-X = np.linspace(-0.5, 0.5, 11)
-K1, K2 = -0.08, 0.03
-
-
-def left_over(camera, x):
-    """Undistortion's error: 6 (k1 x^2)^3 x, and a fifth of it for what k2 and the fourth order add."""
-    return 1.2 * 6 * abs(camera.k1) ** 3 * x**7
+SIZE = {"n_pixels": 2000, "principal_point_px": 999.5}
+TABLE = {"pixel": [0, 600, 1300, 1999], "across_deg": [-20.0, -8.0, 6.0, 21.0], "along_deg": [0.1, 0.0, 0.0, 0.1]}
 
 
 def test_focal_length_counts_pixels(camera):
     assert camera.focal_length_px == 8e-3 / 8e-6
 
 
-def test_distortion_is_the_polynomial():
-    assert distort(0.5, 0.1, 0.2) == 0.5 * (1 + 0.1 * 0.25 + 0.2 * 0.0625)
+def test_a_field_of_view_tells_the_focal_length():
+    """Of 90 deg half the line is as wide as the focal length is long, whatever the pitch."""
+    for pitch in ({}, {"pixel_pitch_m": 8e-6}):
+        camera = Camera(field_of_view_deg=90, **SIZE, **pitch)
+        assert camera.focal_length_px == pytest.approx(1000, rel=1e-14)
+        assert camera.sigmas.focal_length_m == pytest.approx(0.01 * camera.focal_length_m)
+        ends = np.degrees(np.arctan(normalised_from_pixel(camera, [-0.5, 1999.5])))
+        np.testing.assert_allclose(ends, [-45, 45])
 
 
-def test_undistortion_inverts_distortion_to_second_order():
-    def error(scale):
-        exact = np.array([brentq(lambda i, x=x: distort(i, scale * K1, scale * K2) - x, -1, 1, xtol=1e-16) for x in X])
-        return np.abs(undistort(X, scale * K1, scale * K2) - exact).max()
+def test_the_sigma_of_a_field_of_view_is_one_of_the_focal_length():
+    camera = Camera(field_of_view_deg=40, sigmas={"field_of_view_deg": 0.1}, **SIZE)
+    wider = Camera(field_of_view_deg=40.001, **SIZE)
+    by_deg = (camera.focal_length_m - wider.focal_length_m) / 0.001
+    assert camera.sigmas.focal_length_m == pytest.approx(0.1 * by_deg, rel=1e-4)
 
-    # left over is the third order: half the coefficients leave an eighth, up to the fourth order's few per cent
-    assert 6.5 < error(1.0) / error(0.5) < 9.5
-    assert error(1.0) < 1e-4
+
+def test_a_table_tells_focal_length_and_principal_point():
+    camera = Camera(view_angles=TABLE, n_pixels=2000)
+    np.testing.assert_allclose(normalised_from_pixel(camera, camera.principal_point_px), 0, atol=1e-15)
+    x = np.tan(np.deg2rad(TABLE["across_deg"]))
+    np.testing.assert_allclose(normalised_from_pixel(camera, TABLE["pixel"]), x, rtol=1e-13)
+    np.testing.assert_allclose(pixel_directions(camera, [0, 1999])[:, 1], np.tan(np.deg2rad(0.1)), rtol=1e-13)
+    assert camera.focal_length_px == pytest.approx(1999 / (x[-1] - x[0]))
+
+
+def test_a_camera_told_by_angles_is_read_back_as_it_is():
+    for camera in (Camera(view_angles=TABLE, n_pixels=2000), Camera(field_of_view_deg=50, **SIZE)):
+        assert Camera.model_validate(camera.model_dump(mode="json")) == camera
+        assert camera.replaced(k1=0.1).replaced(k1=0.0) == camera
+
+
+@pytest.mark.parametrize(
+    ("values", "found"),
+    [
+        ({"field_of_view_deg": 40, "focal_length_m": 8e-3}, "expected one of focal_length_m and field_of_view_deg"),
+        ({"field_of_view_deg": 40, "view_angles": TABLE}, "expected one of field_of_view_deg and view_angles"),
+        ({"field_of_view_deg": 180}, "field_of_view_deg: found 180, expected less than 180"),
+        ({"field_of_view_deg": True}, "field_of_view_deg: found True"),
+        ({}, "focal_length_m: found nothing"),
+        ({"view_angles": TABLE | {"across_deg": [3.0, 2.0, 1.0, 0.0]}}, "across_deg that rises from pixel to pixel"),
+        ({"view_angles": TABLE | {"pixel": [0, 600, 500, 1999]}}, "pixels that rise from row to row"),
+        ({"view_angles": TABLE | {"along_deg": [0.0]}}, "as many angles as pixels"),
+        ({"view_angles": TABLE | {"pixel": [1, 600, 1300, 1999]}}, "view_angles from pixel 0 to 1999"),
+        (
+            {"field_of_view_deg": 40, "sigmas": {"focal_length_m": 1e-5, "field_of_view_deg": 1}},
+            "sigmas: found .*, expected one of focal_length_m and field_of_view_deg",
+        ),
+    ],
+)
+def test_a_camera_that_is_told_twice_or_wrongly_is_refused(values, found):
+    with pytest.raises(InputError, match=found):
+        Camera(**SIZE, **values)
+
+
+def test_points_are_carried_onto_a_bent_line(camera):
+    bent = camera.replaced(tilt=0.01, smile=0.05)
+    points = np.array([[0.5, 0.4, 2.0], [-0.6, -0.3, 1.5], [0.0, 0.1, 3.0]])
+    ahead = np.array([0.1, 0.9, -0.2])
+    step, at = carried_onto_line(bent, points, ahead)
+    np.testing.assert_allclose(at, points - step[:, None] * ahead, rtol=1e-15)
+    x = at[:, 0] / at[:, 2]
+    np.testing.assert_allclose(at[:, 1] / at[:, 2], 0.01 * x + 0.05 * x**2, atol=1e-13)
+    np.testing.assert_allclose(off_line(bent, at), 0, atol=1e-12)
+
+
+def test_a_mirrored_camera_sees_the_same_from_the_other_end(camera):
+    for one in (camera.replaced(p2=0.01, tilt=0.02, smile=0.03), Camera(view_angles=TABLE, n_pixels=2000, p2=0.01)):
+        u = np.array([0.0, 17.5, one.n_pixels - 1])
+        turned = pixel_directions(one.mirrored(), one.n_pixels - 1 - u)
+        np.testing.assert_allclose(turned * [-1, -1, 1], pixel_directions(one, u), atol=1e-14)
 
 
 def test_pixels_of_an_ideal_camera(camera):
@@ -40,8 +103,8 @@ def test_pixels_of_an_ideal_camera(camera):
 
 def test_pixels_of_a_distorted_camera(camera):
     pixel = pixel_from_normalised(camera, 0.2)
-    assert pixel == (0.2 + camera.k1 * 0.008 + camera.k2 * 0.00032) * 1000 + 320.5
-    np.testing.assert_allclose(normalised_from_pixel(camera, pixel), 0.2, rtol=0, atol=left_over(camera, 0.2))
+    assert pixel == pytest.approx((0.2 + camera.k1 * 0.008 + camera.k2 * 0.00032) * 1000 + 320.5, rel=1e-15)
+    np.testing.assert_allclose(normalised_from_pixel(camera, pixel), 0.2, rtol=1e-14)
 
 
 def test_every_ray_passes_through_its_point(camera, survey, true_pose, true_points):
@@ -51,7 +114,7 @@ def test_every_ray_passes_through_its_point(camera, survey, true_pose, true_poin
     distance = np.linalg.norm(np.cross(true_points - centres, directions), axis=-1) / np.linalg.norm(
         directions, axis=-1
     )
-    assert distance.max() < 2.0 * left_over(camera, 0.25)  # points are at most 2 m deep
+    assert distance.max() < 1e-12  # rounding of metres
     assert np.all(np.sum((true_points - centres) * directions, axis=-1) > 0)
 
 

@@ -53,9 +53,11 @@ def normalised(pixel: Array, intrinsics: Array, pitch_m: float) -> tuple[Array, 
     """Pixel (u, v) to the normalised plane; intrinsics are u0, f in metres, k1, k2."""
     u, v = np.moveaxis(pixel, -1, 0)
     u0, f, k1, k2 = np.moveaxis(intrinsics, -1, 0)
-    x = (u - u0) / (f / pitch_m)
-    r = x * (1 - k1 * x**2 - k2 * x**4)
-    return x / (1 + k1 * r**2 + k2 * r**4), v / (f / pitch_m)
+    distorted = (u - u0) / (f / pitch_m)
+    x = distorted
+    for _ in range(60):  # each step leaves a small share of the error
+        x = x + distorted - x * (1 + k1 * x**2 + k2 * x**4)
+    return x, v / (f / pitch_m)
 
 
 def ray(camera_pose: Array, pixel: Array, body_pose: Array, intrinsics: Array, pitch_m: float) -> tuple[Array, Array]:

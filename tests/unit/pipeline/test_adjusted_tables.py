@@ -75,7 +75,11 @@ def test_all_observations_are_accepted(tables):
 def test_principal_point_and_focal_length_are_kept_with_how_the_pose_follows_them(tables, estimator):
     found = estimator.adjusted(seed=SEED)
     kept = intrinsics_from_table(tables["adjusted_intrinsics"])
-    assert (kept.principal_point_px, kept.focal_length_m) == (found.principal_point_px, found.focal_length_m)
+    assert kept.names == ("principal_point_px", "focal_length_m")
+    assert kept.estimate.tolist() == [found.principal_point_px, found.focal_length_m]
+    assert kept.prior.tolist() == [estimator.camera.principal_point_px, estimator.camera.focal_length_m]
+    assert kept.prior_sigma.tolist() == [2.0, estimator.camera.sigmas.focal_length_m]
+    assert kept.sigma.tolist() == np.sqrt(np.diag(found.intrinsics_covariance)).tolist()
     np.testing.assert_array_equal(kept.covariance, found.intrinsics_covariance)
     np.testing.assert_array_equal(kept.pose_by_intrinsics, found.pose_by_intrinsics)
     camera = kept.camera(estimator.camera)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linepose.geometry import rotations
-from linepose.simulation.flight import FLIGHT_CAMERA, FlightSettings, simulate_flight
+from linepose.simulation.flight import FlightSettings, simulate_flight
 from linepose.simulation.flight_layouts import LAYOUTS
 from linepose.simulation.settings import NavigationErrorSettings
 
@@ -21,8 +21,8 @@ def misses(flight):
     away = flight.points_m[column] - survey.position_m[row, column]
     in_body = np.einsum("lji,lj->li", body, away) - flight.pose[:3]
     seen = in_body @ rotations.matrix_from_rotation_vector(flight.pose[3:])
-    focal_px = flight.focal_length_m / FLIGHT_CAMERA.pixel_pitch_m
-    along = flight.principal_point_px + focal_px * seen[:, 0] / seen[:, 2] - survey.u_px[row, column]
+    focal_px = flight.true_camera.focal_length_px
+    along = flight.true_camera.principal_point_px + focal_px * seen[:, 0] / seen[:, 2] - survey.u_px[row, column]
     return np.column_stack([along, focal_px * seen[:, 1] / seen[:, 2]])
 
 

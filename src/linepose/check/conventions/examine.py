@@ -18,6 +18,7 @@ from linepose.check.conventions.mistakes import AS_GIVEN, Mistake, usual_mistake
 from linepose.check.conventions.recording import Recording
 from linepose.errors import EstimationError, InputError
 from linepose.estimation.wide_search import whitened_residuals
+from linepose.geometry.camera import straight_and_certain
 from linepose.likelihood.base import Likelihood
 from linepose.likelihood.published import PublishedLikelihood
 
@@ -106,7 +107,7 @@ def explain(
     """The best fit near the hand-measured pose, within so many steps, with this mistake undone."""
     try:
         recording = mistake.undo(recording_at(mistake.clock_shift_s))
-        likelihood = PublishedLikelihood(recording.survey, recording.camera)
+        likelihood = PublishedLikelihood(recording.survey, straight_and_certain(recording.camera))
         pose, value = _fit(likelihood, recording.pose, sigmas, maximum_steps)
         if not np.isfinite(likelihood.log_likelihood(pose)):  # residuals alone do not tell in front from behind
             raise EstimationError("a point lies behind the camera")

@@ -61,6 +61,4 @@ def changed_pose(change: Callable[[Floats, Floats], tuple[Floats, Floats]]) -> C
 def flipped_scan_line(recording: Recording) -> Recording:
     """Pixels counted from the other end of the line: the camera turned half about its axis, seen in a mirror."""
     turned = changed_pose(lambda position, matrix: (position, matrix @ np.diag([-1.0, -1.0, 1.0])))(recording)
-    camera = recording.camera
-    mirrored = camera.replaced(principal_point_px=camera.n_pixels - 1 - camera.principal_point_px)
-    return replace(turned, camera=mirrored)
+    return replace(turned, camera=recording.camera.mirrored())

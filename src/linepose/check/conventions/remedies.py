@@ -82,8 +82,13 @@ def _of_hand(undone: Recording, given: Recording, platform: Platform) -> Remedy:
         values["hand_measured.position_m"] = position
     if not np.allclose(undone.pose[3:], given.pose[3:], atol=1e-6):
         values["hand_measured.euler_deg"] = euler_deg
-    if undone.camera.principal_point_px != given.camera.principal_point_px:
+    if undone.camera.view_angles != given.camera.view_angles:
+        values["camera.view_angles"] = "the table with pixels counted from the other end and the signs of angles turned"
+    elif undone.camera.principal_point_px != given.camera.principal_point_px:
         values["camera.principal_point_px"] = undone.camera.principal_point_px
+    for name in ("p2", "smile"):
+        if getattr(undone.camera, name) != getattr(given.camera, name):
+            values[f"camera.{name}"] = getattr(undone.camera, name)
     return Remedy(values)
 
 

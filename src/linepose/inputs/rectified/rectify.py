@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, normalised_from_pixel, pixel_from_normalised
+from linepose.geometry import lens, rotations
+from linepose.geometry.camera import Camera, normalised_from_pixel, pixel_directions, pixel_from_normalised
 from linepose.inputs.rectified.surface import Surface
 from linepose.inputs.scans.scan_files import Intensity
 
@@ -22,6 +22,7 @@ _SEED_PIXELS: Final = 33
 _MOST_CELLS: Final = 40_000_000
 _MOST_STEPS: Final = 60
 _TABLE: Final = 4096
+_NO_BEND: Final = np.empty(0)
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ def rectify(
     if n_lines < 2:
         raise InputError("rectified scan", f"{n_lines} lines", "two or more", "take a longer scan")
     seed_px = np.linspace(0, camera.n_pixels - 1, _SEED_PIXELS)
-    seen = _on_surface(poses, normalised_from_pixel(camera, seed_px), surface)  # (L, S, 2)
+    seen = _on_surface(poses, pixel_directions(camera, seed_px), surface)  # (L, S, 2)
     usable = np.isfinite(seen).all(axis=-1)
     if not usable.any():
         raise InputError("rectified scan", "no ray that meets the surface", "a surface in view", "correct its distance")
@@ -86,6 +87,7 @@ def rectify(
     column, row = ((seen[usable] - first) / (cell_m * _SEED_CELLS)).astype(int).T
     seeds[row, column] = line
     ends = normalised_from_pixel(camera, [-1.0, float(camera.n_pixels)])
+    ends = np.where(np.isfinite(ends), ends, normalised_from_pixel(camera, [0.0, camera.n_pixels - 1.0]))
     x_table = np.linspace(float(ends[0]), float(ends[1]), _TABLE)
     corner = surface.to_world(first)
     light, u_px, at = _mapped(
@@ -98,23 +100,16 @@ def rectify(
         _filled(seeds),
         float(x_table[0]),
         float(x_table[1] - x_table[0]),
-        _pixel_of(camera, x_table),
+        pixel_from_normalised(camera, x_table),
+        _NO_BEND if camera.lens.is_straight else lens.across(x_table, camera.lens),
     )
     return Rectified(light, u_px, at, surface, first, cell_m)
 
 
-def _pixel_of(camera: Camera, x: Floats) -> Floats:
-    """Pixels of normalised x, the inverse of `normalised_from_pixel` to the last digit."""
-    u_px = pixel_from_normalised(camera, x)
-    for _ in range(_MOST_STEPS // 6 if camera.k1 or camera.k2 else 0):
-        u_px = u_px - (normalised_from_pixel(camera, u_px) - x) * camera.focal_length_px
-    return u_px
-
-
-def _on_surface(poses: LinePoses, x: Floats, surface: Surface) -> Floats:
-    """Where rays of normalised x (S,) of every line meet the surface; (L, S, 2), NaN behind the camera."""
+def _on_surface(poses: LinePoses, rays: Floats, surface: Surface) -> Floats:
+    """Where rays (S, 3) of every line meet the surface; (L, S, 2), NaN behind the camera."""
     normal = np.cross(*surface.axes)
-    direction = np.stack([x, np.zeros_like(x), np.ones_like(x)], axis=-1) @ np.swapaxes(poses.matrix, -1, -2)
+    direction = rays @ np.swapaxes(poses.matrix, -1, -2)
     with np.errstate(divide="ignore", invalid="ignore"):
         depth = ((surface.origin_m - poses.centre_m) @ normal)[:, None] / (direction @ normal)
     depth = np.where(np.isfinite(depth) & (depth > 0), depth, np.nan)
@@ -131,8 +126,28 @@ def _filled(seeds: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 @numba.njit(cache=True)
-def _off_line(line: float, x: float, y: float, z: float, centre: Floats, matrix: Floats) -> tuple[float, float]:
-    """Normalised y and x of a world point in the camera of a fractional line; infinite y behind it."""
+def _bend_at(x: float, first: float, step: float, bend: Floats) -> float:
+    """Where the line lies across a straight one at normalised x; 0 without a table."""
+    if len(bend) == 0:
+        return 0.0
+    place = min(max((x - first) / step, 0.0), len(bend) - 1.0)
+    whole = min(int(place), len(bend) - 2)
+    return float(bend[whole] + (place - whole) * (bend[whole + 1] - bend[whole]))
+
+
+@numba.njit(cache=True)
+def _off_line(
+    line: float,
+    x: float,
+    y: float,
+    z: float,
+    centre: Floats,
+    matrix: Floats,
+    x_first: float,
+    x_step: float,
+    bend: Floats,
+) -> tuple[float, float]:
+    """Normalised y off the line, and x, of a world point in the camera of a fractional line; infinite y behind it."""
     first = min(max(int(np.floor(line)), 0), len(centre) - 2)
     share = line - first
     across, along, ahead = 0.0, 0.0, 0.0
@@ -144,20 +159,29 @@ def _off_line(line: float, x: float, y: float, z: float, centre: Floats, matrix:
         ahead += d * (matrix[first, k, 2] + share * (matrix[first + 1, k, 2] - matrix[first, k, 2]))
     if ahead <= 0.0:
         return np.inf, 0.0
-    return along / ahead, across / ahead
+    return along / ahead - _bend_at(across / ahead, x_first, x_step, bend), across / ahead
 
 
 @numba.njit(cache=True)
 def _line_of(
-    start: float, x: float, y: float, z: float, centre: Floats, matrix: Floats, n_steps: int
+    start: float,
+    x: float,
+    y: float,
+    z: float,
+    centre: Floats,
+    matrix: Floats,
+    x_first: float,
+    x_step: float,
+    bend: Floats,
+    n_steps: int,
 ) -> tuple[float, float]:
     """The fractional line on which a world point is seen, by secants from a start, and its x there; NaN if none."""
     last = len(centre) - 1.0
     line = min(max(start, 0.0), last - 1.0)
     before = line + 1.0
-    value_before = _off_line(before, x, y, z, centre, matrix)[0]
+    value_before = _off_line(before, x, y, z, centre, matrix, x_first, x_step, bend)[0]
     for _ in range(n_steps):
-        value, across = _off_line(line, x, y, z, centre, matrix)
+        value, across = _off_line(line, x, y, z, centre, matrix, x_first, x_step, bend)
         slope = (value - value_before) / (line - before) if line != before else 0.0
         if not np.isfinite(slope) or slope == 0.0:
             return np.nan, 0.0
@@ -201,9 +225,10 @@ def _mapped(
     x_first: float,
     x_step: float,
     pixel: Floats,
+    bend: Floats,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], Floats]:
     """Light, pixel and line of every cell of a map of `size`, from its corner by the steps of a cell (2, 3)."""
-    n_rows, n_columns = size
+    (n_rows, n_columns), few = size, _MOST_STEPS // 6
     light = np.full((n_rows, n_columns), np.nan, dtype=np.float32)
     u_px = np.full((n_rows, n_columns), np.nan, dtype=np.float32)
     at = np.full((n_rows, n_columns), np.nan)
@@ -219,9 +244,9 @@ def _mapped(
             z = corner[2] + column * step[0, 2] + row * step[1, 2]
             line, across = np.nan, 0.0
             if np.isfinite(before):
-                line, across = _line_of(before, x, y, z, centre, matrix, _MOST_STEPS // 6)
+                line, across = _line_of(before, x, y, z, centre, matrix, x_first, x_step, bend, few)
             if not np.isfinite(line):
-                line, across = _line_of(float(seed), x, y, z, centre, matrix, _MOST_STEPS)
+                line, across = _line_of(float(seed), x, y, z, centre, matrix, x_first, x_step, bend, _MOST_STEPS)
             place = (across - x_first) / x_step
             if not np.isfinite(line) or place < 0.0 or place >= len(pixel) - 1:
                 before = np.nan

@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, normalised_from_pixel
+from linepose.geometry.camera import Camera, pixel_directions
 from linepose.inputs.rectified.rectify import LinePoses
 from linepose.inputs.rectified.surface import Surface
 
@@ -41,9 +41,9 @@ def fit_board_pose(
     None where no plane can be started from.
     """
     at = _poses_at(poses, position[:, 1])
-    x = normalised_from_pixel(camera, position[:, 0])
-    starts = [start for start in (_start(board_m, x, at, one) for one in surfaces) if start is not None]
-    fits = [_fitted(board_m, x, at, camera.focal_length_px, *start) for start in starts]
+    rays = pixel_directions(camera, position[:, 0])
+    starts = [start for start in (_start(board_m, rays, at, one) for one in surfaces) if start is not None]
+    fits = [_fitted(board_m, rays, at, camera.focal_length_px, *start) for start in starts]
     return min(fits, key=_squared, default=None)
 
 
@@ -62,9 +62,9 @@ def _poses_at(poses: LinePoses, line: Floats) -> LinePoses:
     return LinePoses(centre, matrix)
 
 
-def _start(board_m: Floats, x: Floats, at: LinePoses, surface: Surface) -> tuple[Floats, Floats, float] | None:
+def _start(board_m: Floats, rays: Floats, at: LinePoses, surface: Surface) -> tuple[Floats, Floats, float] | None:
     """Origin, matrix and scale of a board in a plane: where the rays of its points meet it."""
-    direction = np.einsum("nij,nj->ni", at.matrix, np.stack([x, np.zeros_like(x), np.ones_like(x)], axis=-1))
+    direction = np.einsum("nij,nj->ni", at.matrix, rays)
     normal = np.cross(*surface.axes)
     with np.errstate(divide="ignore", invalid="ignore"):
         depth = ((surface.origin_m - at.centre_m) @ normal) / (direction @ normal)
@@ -85,7 +85,7 @@ def _start(board_m: Floats, x: Floats, at: LinePoses, surface: Surface) -> tuple
 
 
 def _fitted(
-    board_m: Floats, x: Floats, at: LinePoses, focal_length_px: float, origin: Floats, matrix: Floats, scale: float
+    board_m: Floats, rays: Floats, at: LinePoses, focal_length_px: float, origin: Floats, matrix: Floats, scale: float
 ) -> BoardPose:
     size = max(scale * float(np.ptp(board_m, axis=0).max()), 1e-9)
 
@@ -98,7 +98,7 @@ def _fitted(
         offset = at_origin + scaled * board_m @ turned[:, :2].T - at.centre_m
         across, along, ahead = np.einsum("nij,ni->jn", at.matrix, offset)
         ahead = np.where(np.abs(ahead) > 1e-9, ahead, 1e-9)
-        return focal_length_px * np.stack([across / ahead - x, along / ahead], axis=-1).ravel()
+        return focal_length_px * np.stack([across / ahead - rays[:, 0], along / ahead - rays[:, 1]], axis=-1).ravel()
 
     found = least_squares(misfit, np.zeros(7), method="trf", max_nfev=_MOST_EVALUATIONS)
     return BoardPose(*pose(found.x), np.linalg.norm(misfit(found.x).reshape(-1, 2), axis=-1))

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from linepose.errors import InputError
+from linepose.output.exports.brown import FARTHEST_PX, require_straight
 from linepose.pipeline.exports.format import ExportFormat
 from linepose.pipeline.exports.options import ExportOptions
 
@@ -26,7 +27,6 @@ MODEL: Final = "USGS_ASTRO_LINE_SCANNER_SENSOR_MODEL"
 _SEMI_AXES_M: Final = (6378137.0, 6356752.314245179)  # WGS84
 _EARTH_FIXED: Final = "EPSG:4978"
 _N_PARAMETERS: Final = 16
-_FARTHEST_PX: Final = 0.1  # of a ray from that of our camera model
 _FARTHEST_M: Final = 2e-4  # of a ray from that of the map, at the ground
 _STEPS_A_LINE: Final = (1, 2, 4, 8)
 _ORDER: Final = 8
@@ -130,6 +130,7 @@ def _optics(camera: "Camera", place: str) -> dict[str, Any]:
     from linepose.geometry.camera import normalised_from_pixel
 
     focal_mm, pitch_mm = 1e3 * camera.focal_length_m, 1e3 * camera.pixel_pitch_m
+    require_straight(camera, place, "a CSM line-scan state")
     pixels = np.arange(camera.n_pixels)
     distorted = (pixels - camera.principal_point_px) / camera.focal_length_px
     removed = distorted - normalised_from_pixel(camera, pixels)
@@ -138,9 +139,9 @@ def _optics(camera: "Camera", place: str) -> dict[str, Any]:
         columns = np.stack([distorted**power for power in (1, 3, 5)], axis=1)
         coefficients = np.asarray(np.linalg.lstsq(columns, removed, rcond=None)[0], dtype=float)
         off_px = float(np.abs(columns @ coefficients - removed).max() * camera.focal_length_px)
-        if off_px > _FARTHEST_PX:
+        if off_px > FARTHEST_PX:
             found = f"a distortion that three radial coefficients miss by {off_px:.2f} px"
-            raise InputError(f"camera of {place}", found, f"{_FARTHEST_PX} px or less", "export another format")
+            raise InputError(f"camera of {place}", found, f"{FARTHEST_PX} px or less", "export another format")
     return {
         "m_focalLength": focal_mm,
         "m_zDirection": 1.0,

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from linepose.errors import InputError
+from linepose.output.exports.brown import FARTHEST_PX, require_straight
 from linepose.output.exports.words import explained
 from linepose.pipeline.exports.format import ExportFormat
 from linepose.pipeline.exports.options import ExportOptions
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from linepose.pipeline.calibration import Calibration
 
 EDGE_TO_CENTRE_PX: Final = 0.5
-FARTHEST_PX: Final = 0.1
 
 
 def write_gref4hsi(calibration: "Calibration", options: ExportOptions, path: Path) -> None:
@@ -60,6 +60,7 @@ def line_camera(camera: "Camera", place: str) -> dict[str, float]:
 
     from linepose.geometry.camera import normalised_from_pixel
 
+    require_straight(camera, place, "gref4hsi")
     pixels = np.arange(camera.n_pixels)
     x, focal = normalised_from_pixel(camera, pixels), camera.focal_length_px
     cx = camera.principal_point_px + EDGE_TO_CENTRE_PX

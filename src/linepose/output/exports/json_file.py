@@ -45,7 +45,7 @@ def _content(calibration: "Calibration", options: ExportOptions) -> dict[str, An
         },
         "camera": {
             "is_adjusted": calibration.intrinsics is not None,
-            **camera.model_dump(exclude={"sigmas"}),
+            **camera.model_dump(mode="json", exclude={"sigmas"}, exclude_none=True),
         },
         "position_m": plain(pose[:3]),
         "rotation_vector_rad": plain(pose[3:]),

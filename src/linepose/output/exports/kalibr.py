@@ -8,6 +8,7 @@ the line as linepose's do.
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from linepose.output.exports.brown import brown
 from linepose.output.exports.words import explained
 from linepose.pipeline.exports.format import ExportFormat
 from linepose.pipeline.exports.options import ExportOptions
@@ -17,20 +18,23 @@ if TYPE_CHECKING:
 
 
 def write_kalibr(calibration: "Calibration", options: ExportOptions, path: Path) -> None:
-    """Write `cam0`: the transform, the intrinsics, and no time shift: the pose rests on the clocks as they are."""
+    """Write `cam0`: the transform, the intrinsics, and no time shift: the pose rests on the clocks as they are.
+
+    Raises InputError for a lens that these coefficients cannot state.
+    """
     import yaml
 
     from linepose.output.exports.numbers import plain
 
     camera = calibration.own_camera
     estimate = calibration.estimate.in_axes(options.body_axes or "frd")
-    focal = camera.focal_length_px
+    optics = brown(camera, calibration.name, has_k3=False)
     chain = {
         "cam0": {
             "camera_model": "pinhole",
-            "intrinsics": plain([focal, focal, camera.principal_point_px, 0.0]),
+            "intrinsics": plain([optics.focal_px, optics.focal_px, optics.centre_px, 0.0]),
             "distortion_model": "radtan",
-            "distortion_coeffs": plain([camera.k1, camera.k2, 0.0, 0.0]),
+            "distortion_coeffs": plain([optics.k1, optics.k2, optics.p1, optics.p2]),
             "resolution": [camera.n_pixels, 1],
             "rostopic": "/line_camera/image_raw",
             "timeshift_cam_imu": 0.0,

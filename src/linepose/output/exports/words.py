@@ -29,10 +29,11 @@ def explained(calibration: "Calibration", estimate: "PoseWithCovariance") -> lis
     ]
     if calibration.intrinsics is not None:
         camera = calibration.own_camera
+        others = [f", {name} {getattr(camera, name):.6g}" for name in calibration.intrinsics.names[2:]]
         lines.append(
             f"The camera adjusted with it, without which it is another pose: principal point "
             f"{camera.principal_point_px:.3f} px from the first pixel's centre, focal length "
-            f"{camera.focal_length_m * 1e3:.5f} mm."
+            f"{camera.focal_length_m * 1e3:.5f} mm{''.join(others)}."
         )
     if estimate.body_axes == "flu":
         lines.insert(

@@ -118,22 +118,36 @@ def _between(
 
 
 @kernel_part
+def _add_with_ray(m: Floats, s: float, c: Floats, by: Floats, wx: float, wy: float, wz: float, t: Floats) -> None:
+    """Add to m (3, 3) what c (6,) makes, of centre and turn with a coordinate by which the ray moves as `by` (3,)."""
+    t[0, 0] = s * (c[0] + c[4] * wz - c[5] * wy)  # of the ray's end with it
+    t[0, 1] = s * (c[1] + c[5] * wx - c[3] * wz)
+    t[0, 2] = s * (c[2] + c[3] * wy - c[4] * wx)
+    for i in range(3):
+        for j in range(3):
+            m[i, j] += by[i] * t[0, j] + t[0, i] * by[j]
+
+
+@kernel_part
 def _covariance(
     n: Floats,
     w: Floats,
     s: float,
     c6: Floats,
     cx: Floats,
+    cy: Floats,
     along: Floats,
     across: Floats,
     variances: Floats,
+    bent: bool,
     m: Floats,
     t: Floats,
 ) -> None:
     """Covariance (3, 3) of where a ray meets the ground, in m; t (3, 3) is scratch.
 
-    c6 (6, 6): of the centre and of a small turn, in world axes, and cx (6,): of these with x; along, across (3,): the
-    ray by x and v of the normalised plane; variances (3,): of those two, and of the ground's height.
+    c6 (6, 6): of the centre and of a small turn, in world axes, and cx, cy (6,): of these with x and y; along, across
+    (3,): the ray by x and y of the normalised plane; variances (4,): of those two, of the ground's height, and x with
+    y.
     """
     wx, wy, wz = s * w[0], s * w[1], s * w[2]
     for i in range(3):  # a turn moves the end of the ray by B = -[s w]x
@@ -154,12 +168,13 @@ def _covariance(
         m[0, j] += t[1, j] * wz - t[2, j] * wy
         m[1, j] += t[2, j] * wx - t[0, j] * wz
         m[2, j] += t[0, j] * wy - t[1, j] * wx
-    t[0, 0] = s * (cx[0] + cx[4] * wz - cx[5] * wy)  # of the ray's end with x
-    t[0, 1] = s * (cx[1] + cx[5] * wx - cx[3] * wz)
-    t[0, 2] = s * (cx[2] + cx[3] * wy - cx[4] * wx)
-    for i in range(3):
-        for j in range(3):
-            m[i, j] += along[i] * t[0, j] + t[0, i] * along[j]
+    _add_with_ray(m, s, cx, along, wx, wy, wz, t)
+    if bent:
+        _add_with_ray(m, s, cy, across, wx, wy, wz, t)
+        both = s * s * variances[3]
+        for i in range(3):
+            for j in range(3):
+                m[i, j] += both * (along[i] * across[j] + across[i] * along[j])
     slope = 1.0 / (n[0] * w[0] + n[1] * w[1] + n[2] * w[2])
     for j in range(3):  # P M P^T
         nm = (n[0] * m[0, j] + n[1] * m[1, j] + n[2] * m[2, j]) * slope
@@ -191,6 +206,7 @@ def on_the_ground(
     with_intrinsics: Any,
     camera_turn: Any,
     x: Any,
+    y: Any,
     by_intrinsics: Any,
     variances: Any,
     normal: Any,
@@ -208,15 +224,16 @@ def on_the_ground(
     """Fill igm (L, 3, P), sigma (L, 4, P) and states (L, P) of lines with P pixels; NaN where there is no ground.
 
     centre (L, 3), turn (L, 3, 3): camera's centre, and body to world. covariance (L, 6, 6): of the centre and of a
-    small turn of the camera, in world axes; with_intrinsics (L, 6, 2): of both with principal point and focal length.
-    camera_turn (3, 3): camera to body. x (P,): normalised; by_intrinsics (P, 2): its derivatives by these two.
-    variances (P, 3): of x, of v, and of the ground's height. grid: heights, or one cell for the plane of normal (3,)
-    and offset. to_map (3, 3): map axes by north, east, down. radii (R,): of 95 % by the ratio of the axes. igm: east,
-    north, up (m) of the survey's own axes. extremes (2,): lowest and highest of the grid. sigma: of the three map axes,
-    and the radius of 95 %.
+    small turn of the camera, in world axes; with_intrinsics (L, 6, I): of both with the intrinsics. camera_turn (3, 3):
+    camera to body. x (P,): normalised, and y (P,), none where the line is straight; by_intrinsics (P, 2, I): their
+    derivatives by the intrinsics. variances (P, 4): of x, of y, of the ground's height, and x with y. grid: heights, or
+    one cell for the plane of normal (3,) and offset. to_map (3, 3): map axes by north, east, down. radii (R,): of 95 %
+    by the ratio of the axes. igm: east, north, up (m) of the survey's own axes. extremes (2,): lowest and highest of
+    the grid. sigma: of the three map axes, and the radius of 95 %.
     """
     is_grid = grid.size > 1
-    n, w, out, cx = normal.copy(), np.empty(3), np.empty(3), np.empty(6)
+    bent, n_intrinsics = len(y) > 0, by_intrinsics.shape[2]
+    n, w, out, cx, cy = normal.copy(), np.empty(3), np.empty(3), np.empty(6), np.empty(6)
     m, t, a = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     axes = np.empty((3, 3))
     for line in range(centre.shape[0]):
@@ -229,6 +246,8 @@ def on_the_ground(
         for pixel in range(x.shape[0]):
             for i in range(3):
                 w[i] = axes[0, i] * x[pixel] + axes[2, i]
+                if bent:
+                    w[i] += axes[1, i] * y[pixel]
             if is_grid:
                 s, state = _first_meeting(grid, corner, cell, extremes, c, w, out)
                 n[0], n[1], n[2] = -out[1], -out[2], -1.0
@@ -244,11 +263,12 @@ def on_the_ground(
             igm[line, 0, pixel], igm[line, 1, pixel] = c[1] + s * w[1], c[0] + s * w[0]
             igm[line, 2, pixel] = -(c[2] + s * w[2])
             for i in range(6):
-                cx[i] = (
-                    with_intrinsics[line, i, 0] * by_intrinsics[pixel, 0]
-                    + with_intrinsics[line, i, 1] * by_intrinsics[pixel, 1]
-                )
-            _covariance(n, w, s, covariance[line], cx, axes[0], axes[1], variances[pixel], m, t)
+                cx[i], cy[i] = 0.0, 0.0
+                for k in range(n_intrinsics):
+                    cx[i] += with_intrinsics[line, i, k] * by_intrinsics[pixel, 0, k]
+                    if bent:
+                        cy[i] += with_intrinsics[line, i, k] * by_intrinsics[pixel, 1, k]
+            _covariance(n, w, s, covariance[line], cx, cy, axes[0], axes[1], variances[pixel], bent, m, t)
             for i in range(3):
                 for j in range(3):
                     t[i, j] = to_map[i, 0] * m[0, j] + to_map[i, 1] * m[1, j] + to_map[i, 2] * m[2, j]

@@ -20,6 +20,7 @@ from linepose.output.map.sources import (
     SOURCES,
     MountedCamera,
     Source,
+    bend_of,
     by_intrinsics,
     line_covariances,
     line_with_intrinsics,
@@ -153,7 +154,8 @@ class ScanOnMap:
             line_with_intrinsics(mounted, euler, sources),
             mounted.turn,
             self._x,
-            by_intrinsics(mounted.camera),
+            bend_of(mounted.camera, self._x),
+            by_intrinsics(mounted.camera, mounted.intrinsics_names),
             pixel_variances(mounted, sources, ground.sigma_m),
             normal,
             offset,
@@ -179,8 +181,9 @@ class ScanOnMap:
         body = matrix_from_euler(euler + self.correction[3:])
         centre = position + self.correction[:3] + body @ mounted.pose[:3]
         x = normalised_from_pixel(mounted.camera, u_px)
+        bend = bend_of(mounted.camera, x)
         place = np.empty((len(at), N_PLACE, 1))
-        nothing = np.zeros((1, 6, 6)), np.zeros((1, 6, 2)), np.zeros((1, 2)), np.zeros((1, 3))
+        nothing = np.zeros((1, 6, 6)), np.zeros((1, 6, 0)), np.zeros((1, 2, 0)), np.zeros((1, 4))
         sigma, state = np.empty((1, N_SIGMA, 1), dtype=np.float32), np.empty((1, 1), dtype=np.uint8)
         normal, offset, grid, corner, cell, extremes = self._ground_for_kernel
         for k in range(len(at)):
@@ -191,6 +194,7 @@ class ScanOnMap:
                 nothing[1],
                 mounted.turn,
                 x[k : k + 1],
+                bend[k : k + 1],
                 nothing[2],
                 nothing[3],
                 normal,

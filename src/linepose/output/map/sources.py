@@ -6,11 +6,11 @@ from functools import cache
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from linepose.adjustment.levels import Levels
 from linepose.arrays import Floats
-from linepose.geometry.camera import Camera, normalised_from_pixel, undistort
+from linepose.geometry import lens
+from linepose.geometry.camera import Camera, normalised_from_pixel
 from linepose.geometry.rotations import (
     left_jacobian_so3,
     matrix_from_euler,
@@ -23,7 +23,6 @@ from linepose.pipeline.adjusted_intrinsics import AdjustedIntrinsics
 Source = Literal["pose", "intrinsics", "navigation", "pixel", "ground"]
 SOURCES: Final[tuple[Source, ...]] = ("pose", "intrinsics", "navigation", "pixel", "ground")
 
-_STEP: Final = 1e-6  # of normalised coordinates and of distortion coefficients, for derivatives
 _HELD: Final = 0.95
 _RATIOS: Final = 257
 _ANGLES: Final = 720
@@ -34,7 +33,7 @@ class MountedCamera:
     """A camera's intrinsics, its pose (6,) on the body and that pose's covariance (6, 6).
 
     `levels` scale what the navigation reports, and the pixel's noise, where an adjustment has estimated them;
-    `intrinsics` tell how principal point and focal length err, and the pose with them, where it has estimated these.
+    `intrinsics` tell how these err, and the pose with them, where it has estimated them.
     """
 
     camera: Camera
@@ -44,17 +43,23 @@ class MountedCamera:
     intrinsics: AdjustedIntrinsics | None = None
 
     @property
+    def intrinsics_names(self) -> tuple[str, ...]:
+        """The intrinsics that err, I of them."""
+        if self.intrinsics is not None:
+            return self.intrinsics.names
+        return ("principal_point_px", "focal_length_m", *self.camera.uncertain_coefficients)
+
+    @property
     def intrinsics_covariance(self) -> Floats:
-        """Covariance (2, 2) of principal point (px) and focal length (m)."""
+        """Covariance (I, I) of the intrinsics: principal point (px), focal length (m), coefficients of the lens."""
         if self.intrinsics is not None:
             return self.intrinsics.covariance
-        sigmas = self.camera.sigmas
-        return np.diag([sigmas.principal_point_px**2, sigmas.focal_length_m**2])
+        return np.diag([getattr(self.camera.sigmas, name) ** 2 for name in self.intrinsics_names])
 
     @property
     def with_intrinsics(self) -> Floats:
-        """Covariance (6, 2) of the pose, position (m) and small turn about body axes (rad), with these two."""
-        return np.zeros((6, 2)) if self.intrinsics is None else self.intrinsics.with_pose
+        """Covariance (6, I) of the pose, position (m) and small turn about body axes (rad), with the intrinsics."""
+        return np.zeros((6, len(self.intrinsics_names))) if self.intrinsics is None else self.intrinsics.with_pose
 
     @property
     def turn(self) -> Floats:
@@ -71,24 +76,24 @@ class MountedCamera:
 
 
 def pixel_variances(mounted: MountedCamera, sources: Collection[Source], sigma_ground_m: float) -> Floats:
-    """Variances (P, 3) of each pixel: of x and v of the normalised plane, and of the ground's height (m^2)."""
+    """Variances (P, 4) of each pixel: of normalised x and y, of the ground's height (m^2), and of x with y."""
     camera = mounted.camera
     sigmas, focal = camera.sigmas, camera.focal_length_px
-    distorted = (np.arange(camera.n_pixels) - camera.principal_point_px) / focal
-    slope = _slope(camera, distorted)
-    variances = np.zeros((camera.n_pixels, 3))
+    variances = np.zeros((camera.n_pixels, 4))
     if "intrinsics" in sources:
-        by_pair = by_intrinsics(camera)
-        variances[:, 0] += np.einsum("pi,ij,pj->p", by_pair, mounted.intrinsics_covariance, by_pair)
-        for k1, k2, sigma in ((_STEP, 0.0, sigmas.k1), (0.0, _STEP, sigmas.k2)):
-            higher = undistort(distorted, camera.k1 + k1, camera.k2 + k2)
-            lower = undistort(distorted, camera.k1 - k1, camera.k2 - k2)
-            variances[:, 0] += ((higher - lower) / (2 * _STEP) * sigma) ** 2
+        by = by_intrinsics(camera, mounted.intrinsics_names)
+        of_ray = by @ mounted.intrinsics_covariance @ np.swapaxes(by, 1, 2)
+        variances[:, 0], variances[:, 1], variances[:, 3] = of_ray[:, 0, 0], of_ray[:, 1, 1], of_ray[:, 0, 1]
     if "pixel" in sources:
+        x = normalised_pixels(camera)
         along_px = sigmas.u_px * (1.0 if mounted.levels is None else mounted.levels.pixel)
-        variances[:, 0] += (slope * along_px / focal) ** 2
+        along = (along_px / (focal * lens.distortion_slope(x, camera.lens))) ** 2
+        bend = lens.across_slope(x, camera.lens)
+        variances[:, 0] += along
+        variances[:, 3] += bend * along
         # of a late line that an adjustment has found, the covariance of the line tells instead
-        variances[:, 1] += (sigmas.v_px / focal) ** 2 if mounted.levels is None else 0.0
+        late = (sigmas.v_px / focal) ** 2 if mounted.levels is None else 0.0
+        variances[:, 1] += bend**2 * along + late
     if "ground" in sources:
         variances[:, 2] = sigma_ground_m**2
     return variances
@@ -126,35 +131,36 @@ def line_covariances(
 
 
 def line_with_intrinsics(mounted: MountedCamera, euler_rad: Floats, sources: Collection[Source]) -> Floats:
-    """Covariances (L, 6, 2) of the camera's centre and small turn, in world axes, with the pair of intrinsics.
+    """Covariances (L, 6, I) of the camera's centre and small turn, in world axes, with the intrinsics.
 
     Pose and intrinsics of an adjustment err together: apart, each alone counts.
     """
+    with_intrinsics = mounted.with_intrinsics
     if "pose" not in sources or "intrinsics" not in sources:
-        return np.zeros((len(euler_rad), 6, 2))
+        return np.zeros((len(euler_rad), *with_intrinsics.shape))
     body = matrix_from_euler(euler_rad)
-    return np.concatenate([body @ mounted.with_intrinsics[:3], body @ mounted.with_intrinsics[3:]], axis=1)
+    return np.concatenate([body @ with_intrinsics[:3], body @ with_intrinsics[3:]], axis=1)
 
 
-def by_intrinsics(camera: Camera) -> Floats:
-    """Derivatives (P, 2) of each pixel's normalised x by principal point (px) and focal length (m)."""
-    distorted = (np.arange(camera.n_pixels) - camera.principal_point_px) / camera.focal_length_px
-    by_distorted = -_slope(camera, distorted)[:, None]
-    return by_distorted * np.stack(
-        [np.full(camera.n_pixels, 1 / camera.focal_length_px), distorted / camera.focal_length_m], axis=1
-    )
-
-
-def _slope(camera: Camera, distorted: ArrayLike) -> Floats:
-    """Derivative (P,) of the ideal normalised x by the distorted one (P,)."""
-    distorted = np.asarray(distorted, dtype=float)
-    higher, lower = (undistort(distorted + step, camera.k1, camera.k2) for step in (_STEP, -_STEP))
-    return (higher - lower) / (2 * _STEP)
+def by_intrinsics(camera: Camera, names: tuple[str, ...]) -> Floats:
+    """Derivatives (P, 2, I) of each pixel's normalised x and y by the intrinsics of these names."""
+    x, optics, focal = normalised_pixels(camera), camera.lens, camera.focal_length_px
+    distorted = (np.arange(camera.n_pixels) - camera.principal_point_px) / focal
+    by_s, by_y = lens.by_coefficients(x, names[2:])
+    moves = np.column_stack([np.full(camera.n_pixels, 1 / focal), distorted / camera.focal_length_m, by_s])
+    by_x = -moves / lens.distortion_slope(x, optics)[:, None]
+    bends = np.column_stack([np.zeros((camera.n_pixels, 2)), by_y])
+    return np.stack([by_x, bends + lens.across_slope(x, optics)[:, None] * by_x], axis=1)
 
 
 def normalised_pixels(camera: Camera) -> Floats:
     """Normalised x (P,) of every pixel's centre."""
     return normalised_from_pixel(camera, np.arange(camera.n_pixels))
+
+
+def bend_of(camera: Camera, x: Floats) -> Floats:
+    """Y (P,) of the line at x (P,); none where it is straight."""
+    return lens.across(x, camera.lens) if not camera.lens.is_straight else np.empty(0)
 
 
 @cache

@@ -10,6 +10,7 @@ from linepose.experiments.adjustment_beside import ADJUSTMENT
 from linepose.output.adjusted import Halves, halves, has_adjustment, is_adjusted, levels_by_set, set_in_words
 from linepose.output.report.adjustment_on_page import halves_table, level_table, pose_table, sigma_table, view_table
 from linepose.output.report.adjustment_words import FAULT_WORDS, boresight_sentence, levels_sentence, sigmas_sentence
+from linepose.output.report.intrinsics import intrinsics_on_page, intrinsics_sentence
 from linepose.output.report.sections import SectionOnPage
 from linepose.pipeline.adjusted_schemas import MEASUREMENTS, VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
@@ -37,9 +38,13 @@ def adjustment_section(calibration: Calibration) -> SectionOnPage | None:
         views_sentence(views),
         *_warnings(calibration),
     ]
+    camera = calibration.intrinsics if own else None
+    if camera is not None:
+        paragraphs.insert(3, intrinsics_sentence(camera))
     anchor = f"{calibration.name}-adjustment"
     tables = [] if own else [pose_table(f"{anchor}-poses", calibration)]
     tables += [level_table(f"{anchor}-levels", levels), sigma_table(f"{anchor}-sigmas", levels)]
+    tables += [] if camera is None else [intrinsics_on_page(f"{anchor}-camera", camera)]
     tables += [halves_table(f"{anchor}-halves", found)] if found else []
     tables.append(view_table(f"{anchor}-views", views))
     title = "What the errors were" if own else "The adjustment"

@@ -138,7 +138,7 @@ def test_a_platform_s_scan_is_exported_by_its_name(tmp_path):
     name, text = calibration.export("csm", tmp_path / "out.json", scan="observation-02").read_text().split("\n", 1)
     state = json.loads(text)
     assert (name, state["m_imageIdentifier"], state["m_sensorName"]) == (MODEL, "observation-02", "robot")
-    pair = made_up.TABLES["adjusted_intrinsics"][0]().iloc[0]
+    pair = made_up.TABLES["adjusted_intrinsics"][0]().set_index("parameter")["value"]
     assert state["m_detectorSampleOrigin"] == pair["principal_point_px"] + 0.5
     assert state["m_focalLength"] == pytest.approx(1e3 * pair["focal_length_m"])
     without = Calibration.from_results(tmp_path / "robot", platform)

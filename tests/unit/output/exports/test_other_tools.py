@@ -10,7 +10,7 @@ import yaml
 from scipy.spatial.transform import Rotation
 
 from linepose.errors import InputError
-from linepose.geometry.camera import rays
+from linepose.geometry.camera import pixel_directions, rays
 from linepose.output.exports.gref4hsi import line_camera
 from linepose.pipeline.calibration import Calibration
 from unit import made_up
@@ -27,7 +27,12 @@ def ground(centre, direction):
 
 
 def platform(**distortion):
-    return made_up.platform(camera=made_up.PLATFORM["camera"] | distortion)
+    model = "adjustment" if {"tilt", "smile"} & set(distortion) else "published"
+    return made_up.platform(camera=made_up.PLATFORM["camera"] | distortion, noise_model=model)
+
+
+def own_camera(results, chosen):
+    return Calibration.from_results(results / "made-up", chosen).own_camera
 
 
 def ours(camera, matrix):
@@ -51,17 +56,46 @@ def test_gref4hsi_lands_on_the_same_ground(made, results, tmp_path, distortion):
     turn = Rotation.from_euler("ZYX", [read["rz"], read["ry"], read["rx"]]).as_matrix()
     direction = np.stack([x, 0 * x, 0 * x + 1], axis=1) @ turn.T @ BODY.T
     centre = BODY_POSITION_M + BODY @ [read["tx"], read["ty"], read["tz"]]
-    np.testing.assert_allclose(ground(centre, direction), ours(chosen.camera, made.matrix), atol=MILLIMETRE)
+    np.testing.assert_allclose(
+        ground(centre, direction), ours(own_camera(results, chosen), made.matrix), atol=MILLIMETRE
+    )
 
 
 def test_gref4hsi_refuses_what_its_reader_cannot_have(made, tmp_path):
     with pytest.raises(InputError, match="frd"):
         made.export("gref4hsi", tmp_path / "x.xml", body_axes="flu")
-    with pytest.raises(InputError, match="miss by"):
-        line_camera(platform(k1=40.0, k2=-900.0).camera, "made-up")
+    for lens, said in (
+        ({"k3": 300.0}, "miss by"),
+        ({"k1": 40.0, "k2": -900.0}, "turns back on itself"),
+        ({"smile": 0.01}, "lies .* px off a straight one, expected 0.1 px or less for gref4hsi"),
+    ):
+        with pytest.raises(InputError, match=said):
+            line_camera(platform(**lens).camera, "made-up")
 
 
-@pytest.mark.parametrize("distortion", [{}, {"k1": -0.08, "k2": 0.02}])
+BENT = {"k1": -0.08, "k2": 0.02, "k3": 0.1, "p2": 0.003, "smile": 0.004}
+
+
+def test_kalibr_has_brown_s_distortion_or_is_refused(results, tmp_path):
+    """Radtan has no k3: one that the others make good is fitted, another refused, as is a tilted line."""
+    few = {name: BENT[name] for name in ("k1", "k2", "p2", "smile")}
+    for lens in (few, BENT):
+        camera = own_camera(results, platform(**lens))
+        read = yaml.safe_load(exported(results, platform(**lens), "kalibr", tmp_path).read_text())["cam0"]
+        focal, _, centre, _ = read["intrinsics"]
+        k1, k2, p1, p2 = read["distortion_coeffs"]
+        x, y, _ = pixel_directions(camera, PIXELS).T
+        radial = 1 + k1 * (x**2 + y**2) + k2 * (x**2 + y**2) ** 2
+        u = focal * (x * radial + 2 * p1 * x * y + p2 * (3 * x**2 + y**2)) + centre
+        v = focal * (y * radial + p1 * (x**2 + 3 * y**2) + 2 * p2 * x * y)
+        np.testing.assert_allclose(u, PIXELS, atol=0.1)
+        np.testing.assert_allclose(v, 0, atol=0.1)
+    for lens in ({"k3": 300.0}, {"tilt": 0.01}):
+        with pytest.raises(InputError, match="a lens that k1, k2, p1, p2 miss by"):
+            exported(results, platform(**lens), "kalibr", tmp_path)
+
+
+@pytest.mark.parametrize("distortion", [{}, {"k1": -0.08, "k2": 0.02}, BENT])
 def test_camera_info_lands_on_the_same_ground(made, results, tmp_path, distortion):
     chosen = platform(**distortion)
     read = yaml.safe_load(exported(results, chosen, "camera_info", tmp_path).read_text())
@@ -84,7 +118,9 @@ def test_camera_info_lands_on_the_same_ground(made, results, tmp_path, distortio
     in_camera = np.column_stack([ideal, np.ones(len(ideal))]) @ np.linalg.inv(array("projection_matrix")[:, :3]).T
     direction = in_camera @ made.matrix[:3, :3].T @ BODY.T
     centre = BODY_POSITION_M + BODY @ made.matrix[:3, 3]
-    np.testing.assert_allclose(ground(centre, direction), ours(chosen.camera, made.matrix), atol=MILLIMETRE)
+    np.testing.assert_allclose(
+        ground(centre, direction), ours(own_camera(results, chosen), made.matrix), atol=MILLIMETRE
+    )
 
 
 def test_exports_of_an_adjustment_have_the_camera_that_belongs_to_the_pose(tmp_path):

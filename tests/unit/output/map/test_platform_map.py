@@ -40,7 +40,7 @@ def test_pixels_lie_where_the_adjusted_camera_puts_them(adjusted):
     scan = platform_map(calibration, section, data).scan_on_map(1)
     line = scan.shape[0] // 2
     found = scan.places(line, line + 1).place_m[0][:, PIXELS]
-    pair = made_up.TABLES["adjusted_intrinsics"][0]().iloc[0]
+    pair = made_up.TABLES["adjusted_intrinsics"][0]().set_index("parameter")["value"]
     both = {name: float(pair[name]) for name in ("principal_point_px", "focal_length_m")}
     given = calibration.platform_file.intrinsics()
     np.testing.assert_allclose(found, on_the_ground(given.replaced(**both), calibration, scan, line), rtol=0, atol=1e-8)
@@ -85,6 +85,6 @@ def test_a_scan_that_is_done_is_made_again_where_its_intrinsics_are_others(adjus
     assert [one.is_new for one in write_maps(maps, tmp_path)] == [False]
     by_file = Calibration.from_results(calibration.results.folder, calibration.platform_file, data_folder=data)
     wider = made_up.TABLES["adjusted_intrinsics"][0]()
-    wider["variance_principal_point_px2"] *= 4
+    wider.loc[0, "covariance_with_principal_point_px"] *= 4
     by_file.results.in_memory["adjusted_intrinsics"] = wider
     assert [one.is_new for one in write_maps(platform_map(by_file, section, data), tmp_path)] == [True]

@@ -112,7 +112,13 @@ def test_under_the_adjustment_the_section_follows_the_pose(adjusted):
     section = platform_sections(adjusted)[0]
     assert section.paragraphs[0] == "Random halves lie 1.99 times as far apart as stated."
     assert section.paragraphs[-1] == "Warning: few draws."
-    assert [table.title for table in section.tables] == ["Levels", "Reported sigmas", "Random halves", "Observations"]
+    assert [table.title for table in section.tables] == [
+        "Levels",
+        "Reported sigmas",
+        "The camera",
+        "Random halves",
+        "Observations",
+    ]
 
 
 def test_a_platform_without_an_adjustment_has_no_section(beside):

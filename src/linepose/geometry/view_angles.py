@@ -1,0 +1,71 @@
+"""View angles of a line's pixels, as makers of cameras measure them."""
+
+from functools import lru_cache
+from typing import Annotated, Final
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from linepose.arrays import Floats
+from linepose.geometry.lens import interpolated, monotone_slopes
+from linepose.settings import Settings
+
+_Angle = Annotated[float, Field(gt=-89.0, lt=89.0)]
+FEWEST: Final = 4
+
+
+class ViewAngles(Settings):
+    """A table of angles: pixel i is seen along the ray (tan across, tan along, 1) in the camera's axes."""
+
+    pixel: tuple[float, ...] = Field(min_length=FEWEST, description="Pixels, from 0 at the first one's centre (px).")
+    across_deg: tuple[_Angle, ...] = Field(
+        description="Angle of each along the scan line, rising with the pixel (deg)."
+    )
+    along_deg: tuple[_Angle, ...] = Field(
+        (), description="Angle of each across the scan line, to the camera's y (deg); none where the line is straight."
+    )
+
+    @model_validator(mode="after")
+    def _is_a_table(self) -> "ViewAngles":
+        lengths = {len(self.pixel), len(self.across_deg), len(self.along_deg or self.pixel)}
+        if len(lengths) > 1:
+            raise ValueError("as many angles as pixels")
+        if np.any(np.diff(self.pixel) <= 0):
+            raise ValueError("pixels that rise from row to row")
+        if np.any(np.diff(self.across_deg) <= 0):
+            raise ValueError("across_deg that rises from pixel to pixel (if it falls, turn all signs)")
+        return self
+
+    @property
+    def x(self) -> Floats:
+        """Normalised x (T,) of the pixels."""
+        return np.tan(np.deg2rad(self.across_deg))
+
+    @property
+    def focal_length_px(self) -> float:
+        """Pixels a unit of normalised x, from the first pixel of the table to the last."""
+        return float((self.pixel[-1] - self.pixel[0]) / (self.x[-1] - self.x[0]))
+
+    @property
+    def principal_point_px(self) -> float:
+        """The pixel that is seen straight ahead; the table's middle where none is."""
+        if not self.across_deg[0] < 0 < self.across_deg[-1]:
+            return (self.pixel[0] + self.pixel[-1]) / 2
+        pixel = np.asarray(self.pixel)
+        return float(interpolated(np.zeros(1), self.x, pixel, monotone_slopes(self.x, pixel))[0][0])
+
+    def mirrored(self, n_pixels: int) -> "ViewAngles":
+        """The table of a line of pixels counted from the other end, the camera turned half about its axis."""
+        turned = [tuple(-one for one in values[::-1]) for values in (self.across_deg, self.along_deg)]
+        return ViewAngles(
+            pixel=tuple(n_pixels - 1 - one for one in self.pixel[::-1]), across_deg=turned[0], along_deg=turned[1]
+        )
+
+
+@lru_cache(maxsize=8)
+def knots(table: ViewAngles) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    """x, s with its slope, and y with its slope, as `Lens` takes them; (T,) each."""
+    x = table.x
+    s = (np.asarray(table.pixel) - table.principal_point_px) / table.focal_length_px
+    y = np.tan(np.deg2rad(table.along_deg)) if table.along_deg else np.zeros_like(x)
+    return x, s, monotone_slopes(x, s), y, monotone_slopes(x, y)

@@ -1,0 +1,66 @@
+"""The CSV of view angles that a platform's file names."""
+
+import numpy as np
+import pytest
+import yaml
+
+from linepose.config.platform import load_platform
+from linepose.config.view_angles import read_view_angles
+from linepose.errors import InputError
+from linepose.geometry.camera import normalised_from_pixel
+from unit.made_up import PLATFORM
+
+ROWS = "pixel,across_deg,along_deg\n1,-2.0,0.1\n2,-1.0,0.0\n3,0.5,0.0\n4,2.0,0.1\n"
+
+
+@pytest.fixture
+def written(tmp_path):
+    def write(rows=ROWS, **camera):
+        (tmp_path / "angles.csv").write_text(rows, encoding="utf-8")
+        values = PLATFORM | {
+            "camera": {"view_angles": "angles.csv", "n_pixels": 4} | camera,
+            "noise_model": "adjustment",
+        }
+        (tmp_path / "robot.yaml").write_text(yaml.safe_dump(values), encoding="utf-8")
+        return tmp_path
+
+    return write
+
+
+def test_a_platform_has_the_table_beside_its_file(written):
+    camera = load_platform(written(), "robot").intrinsics()
+    assert camera.view_angles.pixel == (0, 1, 2, 3)  # counted from 1 in the file
+    np.testing.assert_allclose(np.degrees(np.arctan(normalised_from_pixel(camera, [0, 1, 2, 3]))), [-2, -1, 0.5, 2])
+
+
+def test_columns_are_found_by_name_and_comments_passed_over(written):
+    folder = written("# a lens\nacross_deg, pixel\n-2.0,0\n\n-1.0,1\n0.5,2\n2.0,3\n")
+    assert read_view_angles(folder / "angles.csv") == {"across_deg": [-2.0, -1.0, 0.5, 2.0], "pixel": [0, 1, 2, 3]}
+    assert load_platform(folder, "robot").camera.view_angles.along_deg == ()
+
+
+@pytest.mark.parametrize(
+    ("rows", "camera", "found"),
+    [
+        (ROWS, {"view_angles": "other.csv"}, "other.csv: found no such file"),
+        (ROWS, {"focal_length_m": 8e-3}, "found view_angles with focal_length_m, expected one of them"),
+        (ROWS, {"principal_point_px": 2.0}, "found view_angles with principal_point_px"),
+        ("pixel,angle\n0,1\n", {}, "heading: found pixel, angle, expected columns pixel, across_deg and perhaps along"),
+        ("", {}, "heading: found nothing"),
+        (ROWS + "5,3.0\n", {}, "line 6: found 2 cells, expected 3"),
+        (ROWS + "5,3.0,x\n", {}, "line 6, along_deg: found 'x', expected a number"),
+        (ROWS.replace("0.5", "-1.0"), {}, "across_deg that rises from pixel to pixel"),
+        (ROWS, {"n_pixels": 5}, "view_angles from pixel 0 to 4"),
+    ],
+)
+def test_what_is_no_table_is_told_in_one_line(written, rows, camera, found):
+    with pytest.raises(InputError, match=found):
+        load_platform(written(rows, **camera), "robot")
+
+
+def test_the_paper_s_models_take_no_bent_line(written):
+    folder = written()
+    path = folder / "robot.yaml"
+    path.write_text(path.read_text().replace("noise_model: adjustment", "noise_model: published"))
+    with pytest.raises(InputError, match="noise_model adjustment with a line that is tilted or bent: published"):
+        load_platform(folder, "robot")
