@@ -57,15 +57,20 @@ def test_marks_on_the_board_lie_where_the_map_says(finished):
 
 
 def test_lost_and_unfinished_maps_are_made_again_to_the_same_bytes(copied):
-    """As after a kill: without the list the run is not done, and what is finished stays."""
+    """As after a kill: without the list the run is not done, and what is finished stays. By two jobs."""
     results = copied.folder / "results" / "tiny"
     before = {path.name: path.read_bytes() for path in (results / "map").iterdir()}
     kept = results / "map" / "observation-01-igm.dat"
     made_at = kept.stat().st_mtime_ns
     (results / "map" / "observation-03-igm.dat").unlink()
     (results / "map" / ".12345678-observation-03-sigma.dat").touch()
-    run = copied.run("results/tiny/map_files.txt", cores=1)
+    run = copied.run("results/tiny/map_files.txt", "--set-scatter", "maps=2", cores=1)
     assert run.returncode == 0, run.stderr
+    logs = copied.folder / "results" / "logs" / "tiny"
+    shares = [(logs / f"map_{number}-of-2.log").read_text() for number in (1, 2)]
+    assert [("map_part: 2 of 2" in share, "map_part: 3" in share) for share in shares] == [(True, False)] * 2
+    assert "map: 4 of 4" in (logs / "map.log").read_text()
+    assert not list(logs.glob("*.done"))
     assert {path.name: path.read_bytes() for path in (results / "map").iterdir()} == before
     assert kept.stat().st_mtime_ns == made_at
     again = copied.linepose("map", "tiny")

@@ -57,6 +57,11 @@ PAPER_RESULTS = []  # what `rule all` makes of the paper, where config/paper exi
 FURTHER_PAGES = {}  # that the report links to: title and address
 
 
+scattergather:
+    coverage=4,  # parts of a cell of the coverage study
+    maps=1,  # jobs that put a platform's scans on the map
+
+
 wildcard_constraints:
     platform="[A-Za-z0-9_.-]+",
 

@@ -1,15 +1,22 @@
 # What people take away and read: maps, figures and reports.
 
 
+MAPPED = {  # what maps of scans rest on
+    "pose": "results/{platform}/pose.parquet",
+    "samples": "results/{platform}/mcmc",
+    "points": "results/{platform}/estimated_points.parquet",
+    "frame": "results/{platform}/map_frame.parquet",
+    "adjusted": lambda wildcards: adjusted_results(wildcards.platform),
+    "record": record,
+}
+MAP_PARTS = gather.maps("results/logs/{{platform}}/map_{scatteritem}.done")
+
+
 rule map:  # finished scans stay in results/NAME/map when a run is killed, so that the next goes on
     input:
-        pose="results/{platform}/pose.parquet",
-        samples="results/{platform}/mcmc",
-        points="results/{platform}/estimated_points.parquet",
-        frame="results/{platform}/map_frame.parquet",
-        adjusted=lambda wildcards: adjusted_results(wildcards.platform),
-        record=record,
+        **MAPPED,
         lost=remade_if_lost("results/{platform}/map"),
+        parts=MAP_PARTS if len(MAP_PARTS) > 1 else [],
     output:
         budget="results/{platform}/map_budget.parquet",
         scans="results/{platform}/map_scans.parquet",
@@ -31,14 +38,18 @@ rule map:  # finished scans stay in results/NAME/map when a run is killed, so th
         "../../scripts/map.py"
 
 
+use rule map as map_part with:  # a share of the scans, as a job of its own: --set-scatter maps=N
+    input:
+        **MAPPED,
+    output:
+        temp("results/logs/{platform}/map_{scatteritem}.done"),
+    log:
+        "results/logs/{platform}/map_{scatteritem}.log",
+
+
 rule strip_fit:
     input:
-        pose="results/{platform}/pose.parquet",
-        samples="results/{platform}/mcmc",
-        points="results/{platform}/estimated_points.parquet",
-        frame="results/{platform}/map_frame.parquet",
-        adjusted=lambda wildcards: adjusted_results(wildcards.platform),
-        record=record,
+        **MAPPED,
     output:
         strip_patches="results/{platform}/strip_patches.parquet",
         strip_fit="results/{platform}/strip_fit.parquet",

@@ -54,10 +54,6 @@ wildcard_constraints:
     noise_model="[a-z]+",
 
 
-scattergather:
-    coverage=4,
-
-
 COVERED = {  # what a cell's surveys depend on
     "platform": settings,
     "regime": lambda wildcards: STUDY.coverage.regimes[wildcards.regime].model_dump(

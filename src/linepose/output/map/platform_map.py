@@ -5,7 +5,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 import pandas as pd
@@ -75,6 +75,10 @@ class PlatformMap:
         times = line_times_of(self.source)(path, lines)
         self.scan.navigation.check(times, str(path))
         return replace(self.scan, name=path.stem, time_us=times, correction=self._correction(number))
+
+    def part(self, share: range) -> Self:
+        """The map of the scans of these consecutive numbers alone."""
+        return replace(self, paths=dict(list(self.paths.items())[share.start : share.stop]))
 
     def _correction(self, number: int) -> Floats:
         """What the adjustment added to the body's poses in an observation; zero where the pose is of no adjustment."""
