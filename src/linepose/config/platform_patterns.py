@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from linepose.config.names import check_name
 from linepose.errors import InputError
 
 
@@ -20,10 +21,10 @@ def fits(name: str, pattern: str) -> bool:
 def named_platforms(given: Sequence[str], folder: Path, place: str = "config/config.yaml: platforms") -> list[str]:
     """The platforms that names and patterns name, each once; those of a pattern by name, in the place of the pattern.
 
-    Raises InputError for a name that is given twice and for a pattern that fits no file of the folder. A pattern passes
-    over what is named already.
+    Raises InputError for a name that is none, or is given twice, and for a pattern that fits no file of the folder. A
+    pattern passes over what is named already.
     """
-    written = [name for name in given if not is_pattern(name)]
+    written = [check_name(name, place) for name in given if not is_pattern(name)]
     if twice := next((name for name in written if written.count(name) > 1), None):
         raise InputError(place, f"{twice} twice", "each platform once", "remove one of them")
     names: dict[str, None] = {}

@@ -39,6 +39,13 @@ def test_pattern_of_nothing_and_name_twice_are_refused(folder, given, told):
         named_platforms(given, folder)
 
 
+def test_name_that_no_file_can_have_is_told_with_the_place_that_says_it(folder):
+    with pytest.raises(
+        InputError, match=r"config.yaml: platforms: found .fleet-1 no., expected letters, digits, - and _"
+    ):
+        named_platforms(["fleet-1 no"], folder)
+
+
 def test_only_signs_make_a_pattern():
     assert fits("fleet-1", "fleet-*")
     assert fits("fleet-1", "fleet-1")
