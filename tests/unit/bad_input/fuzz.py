@@ -90,8 +90,8 @@ def by_chance(run: Run, seconds: float, number: int) -> None:
             pool = [*pool, content][-_MOST_KEPT:] + first
 
 
-def by_coverage(run: Run, seconds: float) -> None:
-    """Atheris; ends the process."""
+def by_coverage(run: Run, seconds: float, number: int) -> None:
+    """Atheris from this seed; ends the process."""
     import atheris
 
     with TemporaryDirectory() as corpus:
@@ -106,7 +106,7 @@ def by_coverage(run: Run, seconds: float) -> None:
                 run.tell("atheris")
                 os._exit(0)
 
-        atheris.Setup([sys.argv[0], *options, "-verbosity=0", corpus], check)
+        atheris.Setup([sys.argv[0], *options, "-verbosity=0", f"-seed={number}", corpus], check)
         atheris.Fuzz()
 
 
@@ -116,7 +116,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m unit.bad_input.fuzz", description=__doc__)
     parser.add_argument("reader", help="name of the reader, as python -m unit.bad_input prints it")
     parser.add_argument("--seconds", type=float, default=600, help="how long (default: %(default)g)")
-    parser.add_argument("--seed", type=int, default=0, help="of the changes by chance (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="of the changes (default: %(default)s)")
     parser.add_argument("--by-chance", action="store_true", help="leave atheris aside")
     parser.add_argument("--findings", type=Path, default=Path("findings"), help="folder (default: %(default)s)")
     given = parser.parse_args()
@@ -131,7 +131,7 @@ def main() -> None:
     with atheris.instrument_imports(include=["linepose"]):
         run = Run(given.reader, given.findings)
         run.check(run.reader.whole())  # what a reader imports late is instrumented too
-    by_coverage(run, given.seconds)
+    by_coverage(run, given.seconds, given.seed + 1)  # 0 is a seed of chance
 
 
 if __name__ == "__main__":

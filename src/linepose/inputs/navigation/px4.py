@@ -23,7 +23,7 @@ from linepose.inputs.navigation.autopilot_poses import (
 )
 from linepose.inputs.navigation.format import NavigationFormat
 from linepose.inputs.navigation.record import NavigationRecord, geodetic_record
-from linepose.inputs.navigation.rosbag_axes import euler_of
+from linepose.inputs.navigation.rosbag_axes import euler_of, known_orientations
 
 _MAGIC: Final = b"ULog\x01\x12\x35"
 _ATTITUDE, _POSITION, _GPS = "vehicle_attitude", "vehicle_global_position", ("vehicle_gps_position", "sensor_gps")
@@ -66,9 +66,9 @@ def _flight(path: Path) -> FlightLog:
     gps_name = next((name for name in _GPS if name in tables), _GPS[0])
     gps = tables.get(gps_name, {})
     fields = {
-        _ATTITUDE: ["q[0]", "q[1]", "q[2]", "q[3]"],
-        _POSITION: ["lat", "lon"],
-        gps_name: ["time_utc_usec", "fix_type"],
+        _ATTITUDE: ["timestamp", "q[0]", "q[1]", "q[2]", "q[3]"],
+        _POSITION: ["timestamp", "lat", "lon"],
+        gps_name: ["timestamp", "time_utc_usec", "fix_type"],
     }
     for message, columns in ((attitude, _ATTITUDE), (position, _POSITION), (gps, gps_name)):
         for field in (one for one in fields[columns] if message and one not in message):
@@ -78,9 +78,10 @@ def _flight(path: Path) -> FlightLog:
     usable &= _column(gps, "fix_type") >= _FIX_3D
     if not usable.all():
         log.warning("%s: %d GPS messages without a fix are left out", path, np.sum(~usable))
+    known = known_orientations(quaternion, f"{path}, {_ATTITUDE}")
     return FlightLog(
-        _times(attitude, "timestamp_sample"),
-        euler_of(quaternion, "ned"),
+        _times(attitude, "timestamp_sample")[known],
+        euler_of(quaternion[known], "ned"),
         _times(position, "timestamp_sample"),
         np.stack([_column(position, "lat"), _column(position, "lon"), _height(position)], axis=-1),
         _times(gps, "timestamp")[usable],

@@ -25,19 +25,19 @@ def quaternion_of(orientation: Any) -> tuple[float, float, float, float]:
 
 
 def known_orientations(quaternions: Floats, place: str) -> np.ndarray:
-    """Which of the quaternions (K, 4) are not zero, as drivers send them before the attitude is known; counted.
+    """Which of the quaternions (K, 4) are not zero or NaN, as drivers send them before the attitude is known; counted.
 
     Raises InputError where none is known, or one has another length than 1.
     """
     length = np.linalg.norm(quaternions, axis=1)
-    known = length != 0
+    known = np.isfinite(length) & (length != 0)
     wrong = np.flatnonzero(~(np.abs(length - 1) < _NOT_UNIT) & (known | ~known.any()))
     for row in wrong[:1]:
         found = f"orientation {', '.join(f'{one:g}' for one in quaternions[row])}"
         remedy = "record after the attitude is known, or cut the bag"
         raise InputError(f"{place}, message {row + 1}", found, "a quaternion of length 1", remedy)
     if not known.all():
-        told = "%s: %d of %d messages with an orientation of zeros are left out"
+        told = "%s: %d of %d messages with an orientation of zeros or no numbers are left out"
         log.warning(told, place, np.count_nonzero(~known), len(known))
     return np.asarray(known)
 

@@ -157,3 +157,28 @@ def test_extra_that_is_not_installed_is_named(tmp_path, name, monkeypatch):
     told = rf"flight.log: found no package {package}, .*; pip install 'linepose\[autopilot\]'"
     with pytest.raises(InputError, match=told):
         read(name, tmp_path)
+
+
+def test_attitudes_before_the_estimator_has_one_are_left_out(tmp_path, caplog):
+    """Zeros and NaN, which are no rotation."""
+    pytest.importorskip("pyulog")
+    ulog(tmp_path / "a.ulg")
+    content = (tmp_path / "a.ulg").read_bytes()
+    x, y, z, w = Rotation.from_euler("ZYX", [30, -10, 5], degrees=True).as_quat()
+    for values in ([0.0] * 4, [np.nan] * 4):
+        content = content.replace(struct.pack("<4f", w, x, y, z), struct.pack("<4f", *values), 1)
+    (tmp_path / "a.ulg").write_bytes(content)
+    record = read_navigation(Px4Section(format="px4", file="a.ulg"), tmp_path)
+    assert len(record.log.time_us) == 10 * (N_SECONDS - 1) + 1 - 2
+    assert f"2 of {10 * N_SECONDS} messages with an orientation of zeros or no numbers are left out" in caplog.text
+
+
+@pytest.mark.parametrize("kind", ["vehicle_attitude", "vehicle_global_position", "vehicle_gps_position"])
+def test_messages_without_their_time_are_told(tmp_path, kind):
+    pytest.importorskip("pyulog")
+    ulog(tmp_path / "a.ulg")
+    content = (tmp_path / "a.ulg").read_bytes()
+    named = f"{kind}:uint64_t timestamp;".encode()
+    (tmp_path / "a.ulg").write_bytes(content.replace(named, named.replace(b"timestamp", b"timestomp")))
+    with pytest.raises(InputError, match=rf"a.ulg: found ({kind} without timestamp|.*timestamp)"):
+        read_navigation(Px4Section(format="px4", file="a.ulg"), tmp_path)

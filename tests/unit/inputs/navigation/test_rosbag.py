@@ -174,13 +174,13 @@ def test_faulty_records_are_left_out_and_counted(tmp_path, drive, caplog):
     with writers.Bag(tmp_path / "run.bag", 1) as bag:
         for row, time in enumerate(drive.time_us[:20]):
             for _ in range(1 + (row == 7)):
-                bag.imu("/imu", time, IDENTITY if row != 3 else [0.0, 0.0, 0.0, 0.0], SMALL)
+                bag.imu("/imu", time, {3: [0.0] * 4, 4: [np.nan] * 4}.get(row, IDENTITY), SMALL)
             for _ in range(1 + (row == 5)):
                 bag.fix("/fix", time, drive.geodetic[row] if row else [np.nan] * 3, SMALL, 0, 3)
     log = read_navigation(section(), tmp_path).log
-    np.testing.assert_array_equal(log.time_us, drive.time_us[[1, 2, *range(4, 20)]])
+    np.testing.assert_array_equal(log.time_us, drive.time_us[[1, 2, *range(5, 20)]])
     assert "NavSatFix: 1 records without a value are left out; 1 records that repeat" in caplog.text
-    assert "Imu: 1 of 21 messages with an orientation of zeros are left out" in caplog.text
+    assert "Imu: 2 of 21 messages with an orientation of zeros or no numbers are left out" in caplog.text
     assert "Imu: 1 records that repeat the one before are passed over" in caplog.text
 
 
