@@ -49,7 +49,7 @@ def estimates_figure(table: pd.DataFrame, hand_pose: Floats, true_pose: Floats |
                 label=model,
             )
         panel.set_xlabel(_NAMES[index])
-        panel.locator_params(axis="x", nbins=3)
+        panel.locator_params(axis="x", nbins=2)
         panel.grid(visible=False, axis="y")
         panel.set_yticks(range(len(sets)), [set_in_words(name).replace(" ", "\n") for name in sets])
         panel.set_ylim(len(sets) - 0.4, -0.6)

@@ -54,8 +54,9 @@ def fit_sentence(fit: "pd.Series[Any]") -> str:
     scans = f" Scans that could not be put on level ground: {count['n_scans_left_out']} of {count['n_scans']}."
     scans = scans if count["n_scans_left_out"] else ""
     if not count["n_compared"]:
-        tried = f": of {count['n_tried']} patches {left_out}" if count["n_tried"] else ""
-        return f"No ground was compared that two of {count['n_scans']} scans show{tried}.{scans}"
+        if not count["n_tried"]:
+            return f"No two of {count['n_scans']} scans show the same ground, so none was compared.{scans}"
+        return f"Overlapping scans could not be compared: of {count['n_tried']} patches {left_out}.{scans}"
     after, before, pixel = (float(fit[key]) for key in ("rms_after_m", "rms_before_m", "pixel_m"))
     return (
         f"Overlapping scans lie {after * _MM:.0f} mm apart on the map, {after / pixel:.1f} pixels (RMS), and "

@@ -78,8 +78,12 @@ def test_misfit_is_told_in_millimetres_and_pixels_with_what_was_left_out(tmp_pat
     )
     fit_written(tmp_path, n_compared=0, n_uncorrelated=36, n_without_ground=0, n_scans_left_out=1)
     assert section_of(tmp_path, BUDGET, **MAPPED).paragraphs[-1] == (
-        "No ground was compared that two of 3 scans show: of 40 patches 36 were not found again, 4 are not borne out "
-        "by others of their pair. Scans that could not be put on level ground: 1 of 3."
+        "Overlapping scans could not be compared: of 40 patches 36 were not found again, 4 are not borne out by others "
+        "of their pair. Scans that could not be put on level ground: 1 of 3."
+    )
+    fit_written(tmp_path, n_compared=0, n_tried=0, n_scans_left_out=0)
+    assert section_of(tmp_path, BUDGET, **MAPPED).paragraphs[-1] == (
+        "No two of 3 scans show the same ground, so none was compared."
     )
 
 
