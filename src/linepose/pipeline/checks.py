@@ -202,16 +202,23 @@ def independence(evidence: Evidence) -> Check:
 
 
 def angular_diversity(evidence: Evidence) -> Check:
-    """Whether the body was tilted differently enough from view to view."""
+    """Whether the body was tilted differently enough from view to view.
+
+    An adjustment's sigmas say what too little of it costs, so that it is enough that the data say something of all.
+    """
     found = f"Roll and pitch spread by {evidence.tilt_spread_deg:.1f}° (RMS) over the accepted observations."
     if evidence.undecided:
         return Check(
             "Angular diversity",
             Level.CARE,
             f"{found} The data say no more than the hand measurement about {', '.join(evidence.undecided)}.",
-            "Add observations with the vehicle rolled or pitched by 4° or more, and from other sides.",
+            "Add observations with the vehicle rolled or pitched by 4° or more, and from other sides; from the air, fly "
+            "a cross strip and strips at a second height.",
             f"the data do not decide {', '.join(evidence.undecided)}",
         )
+    if evidence.adjusted is not None:
+        found += " The data say more than the hand measurement about every number."
+        return Check("Angular diversity", Level.GOOD, found)
     if evidence.tilt_spread_deg >= TILT_SPREAD_DEG:
         return Check("Angular diversity", Level.GOOD, found)
     return Check(

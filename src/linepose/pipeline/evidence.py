@@ -134,8 +134,8 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:
         drift_known=bool(levels.loc["drift", "value"] > 0),
         navigation_error=navigation_error(levels["value"]),
         lost=tuple(
-            LostMeasurement(int(row["observation"]), str(row["point"]), float(row["weight"]))
-            for _, row in lost.iterrows()
+            LostMeasurement(int(observation), str(point), float(weight))
+            for observation, point, weight in zip(lost["observation"], lost["point"], lost["weight"], strict=True)
         ),
         n_measurements=len(single),
     )

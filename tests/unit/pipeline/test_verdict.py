@@ -1,10 +1,15 @@
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from linepose.estimation.noise_models import ADJUSTMENT, PUBLISHED
+from linepose.pipeline.adjusted_schemas import MEASUREMENTS
+from linepose.pipeline.calibration import Calibration
 from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, LostMeasurement
 from linepose.pipeline.verdict import Evidence, Level, judge
+from linepose.tables import write_table
+from unit import made_up, made_up_adjustment
 
 FINE = Evidence(
     n_observations=25,
@@ -116,6 +121,14 @@ def test_errors_in_common_do_no_harm_where_halves_agree():
 ADJUSTED = replace(FINE, noise_model=ADJUSTMENT.name, adjusted=AdjustedEvidence(0.9, 80.0, 0.4, ()))
 
 
+def test_little_tilt_is_in_the_sigmas_of_an_adjustment_as_long_as_the_data_say_something_of_all():
+    level = replace(ADJUSTED, tilt_spread_deg=0.4)
+    assert named(judge(level), "Angular diversity").level == Level.GOOD
+    open_height = named(judge(replace(level, undecided=("r_z down",))), "Angular diversity")
+    assert open_height.level == Level.CARE
+    assert "second height" in open_height.advice
+
+
 def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
     verdict = judge(ADJUSTED)
     assert verdict.level == Level.GOOD
@@ -172,3 +185,13 @@ def test_a_few_bad_matches_of_thousands_are_named_and_no_reason_to_doubt():
     assert "Of 1500 measurements 9 have lost their weight, where heavy tails explain up to 63" in check.found
     assert "point t1 of observation 1 (0.01), point t2" in check.found
     assert "t6" not in check.found
+
+
+def test_a_measurement_that_has_lost_its_weight_is_told_by_its_points_name(tmp_path):
+    made_up.write_adjusted_results(tmp_path)
+    measurements = made_up_adjustment.adjusted_measurements()
+    first = (measurements["observation"] == 1) & (measurements["point"] == 3)
+    lighter = measurements.assign(weight=np.where(first, 0.05, measurements["weight"]))
+    write_table(lighter, tmp_path / "adjusted_measurements.parquet", MEASUREMENTS)
+    verdict = Calibration.from_results(tmp_path, made_up.adjusted_platform()).verdict()
+    assert "point 3 of observation 1 (0.05)" in named(verdict, "Weights").found
