@@ -212,8 +212,8 @@ def angular_diversity(evidence: Evidence) -> Check:
             "Angular diversity",
             Level.CARE,
             f"{found} The data say no more than the hand measurement about {', '.join(evidence.undecided)}.",
-            "Add observations with the vehicle rolled or pitched by 4° or more, and from other sides; from the air, fly "
-            "a cross strip and strips at a second height.",
+            "Add observations with the vehicle rolled or pitched by 4° or more, and from other sides; from the air, "
+            "fly a cross strip and strips at a second height.",
             f"the data do not decide {', '.join(evidence.undecided)}",
         )
     if evidence.adjusted is not None:
