@@ -50,7 +50,7 @@ docs: $(STAMP) ## Build the documentation site in build/docs; a warning is an er
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs build/docs
 
 bench: $(STAMP) ## Measure speed on this machine
-	@for name in machine likelihood pipeline experiments workflow scans adjustment; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
+	@for name in machine likelihood pipeline experiments workflow scans maps adjustment; do $(BIN)/python benchmarks/$$name.py || exit 1; echo; done
 
 readme-bench: $(STAMP) ## Measure speed and put the figures into docs/benchmarks.md and README.md; on a machine that does nothing else
 	@mkdir -p build

@@ -21,7 +21,7 @@ from linepose.arrays import Floats
 from linepose.config.platform import Platform, load_platform
 from linepose.estimation.pose_change import FALSE_ALARMS, GROUPS, WHOLE, PoseChange
 from linepose.estimation.recheck import recheck
-from linepose.geometry.camera import Camera
+from linepose.simulation.drawn_camera import drawn_camera
 from linepose.simulation.noise_levels import NoiseLevels
 from linepose.simulation.noisy_survey import draw_survey
 from linepose.simulation.settings import SimulationSettings
@@ -52,7 +52,7 @@ def simulated(platform: Platform, move: Floats, seed: int, section: AdjustmentSe
     """The change that one recheck finds where the camera made a move (6,) after the calibration."""
     assert platform.simulation is not None
     random, camera, drive = np.random.default_rng(seed), platform.intrinsics(), without_faults(platform.simulation)
-    true_camera = drawn(camera, random)
+    true_camera = drawn_camera(camera, 1.0, random)
     true_pose = np.array(drive.true_pose)
     hand = moved(true_pose, np.linalg.cholesky(default_hand_covariance()) @ random.standard_normal(6))
     survey, _ = draw_survey(true_camera, with_passes(drive, CALIBRATED), LEVELS, random)
@@ -60,15 +60,6 @@ def simulated(platform: Platform, move: Floats, seed: int, section: AdjustmentSe
     later = replace(with_passes(drive, NEW), true_pose=tuple(moved(true_pose, move).tolist()))
     views, _ = draw_survey(true_camera, later, LEVELS, random)
     return recheck(calibrated, views, camera, section, seed=seed).change
-
-
-def drawn(camera: Camera, random: np.random.Generator) -> Camera:
-    """The true camera of one that is believed to be this."""
-    of_point, of_focal = random.standard_normal(2)
-    return camera.replaced(
-        principal_point_px=camera.principal_point_px + of_point * camera.sigmas.principal_point_px,
-        focal_length_m=camera.focal_length_m + of_focal * camera.sigmas.focal_length_m,
-    )
 
 
 def with_passes(drive: SimulationSettings, passes: tuple[int, ...]) -> SimulationSettings:

@@ -17,7 +17,8 @@ MISSED: Final = 1  # the ray meets no ground
 OUTSIDE: Final = 2  # it leaves the elevation model
 IN_HOLE: Final = 3  # heights are missing where it would meet the ground
 MET_TWICE: Final = 4  # it meets the ground again behind the first time, which counts
-_HALVINGS: Final = 40
+_MOST_STEPS: Final = 60
+_MET_M: Final = 1e-8  # of the ground's height, within which a ray has met it
 _MARGIN_M: Final = 1e-3  # beyond the lowest and the highest ground, so that a ray begins above it and ends below
 
 
@@ -106,14 +107,27 @@ def _first_meeting(
 def _between(
     grid: Floats, corner: Floats, cell: Floats, c: Floats, w: Floats, above: float, below: float, out: Floats
 ) -> float:
-    """Where between a point above the ground and one below it the ray meets it."""
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (above + below)
-        _above(grid, corner, cell, c, w, middle, out)
+    """Where between a point above the ground and one below it the ray meets it.
+
+    By false position, in which an end that stays counts half (Illinois): a few steps where the ground is smooth.
+    """
+    _above(grid, corner, cell, c, w, above, out)
+    over = out[0]
+    _above(grid, corner, cell, c, w, below, out)
+    under, kept = out[0], 0
+    for _ in range(_MOST_STEPS):
+        place = above + (below - above) * over / (over - under)
+        _above(grid, corner, cell, c, w, place, out)
+        if not abs(out[0]) > _MET_M:  # or in a hole, as its state says
+            return place
         if out[0] > 0.0:
-            above = middle
+            above, over = place, out[0]
+            under *= 0.5 if kept == 1 else 1.0
+            kept = 1
         else:
-            below = middle
+            below, under = place, out[0]
+            over *= 0.5 if kept == 2 else 1.0
+            kept = 2
     return 0.5 * (above + below)
 
 
