@@ -30,10 +30,11 @@ class ViewAngles(Settings):
         lengths = {len(self.pixel), len(self.across_deg), len(self.along_deg or self.pixel)}
         if len(lengths) > 1:
             raise ValueError("as many angles as pixels")
-        if np.any(np.diff(self.pixel) <= 0):
-            raise ValueError("pixels that rise from row to row")
-        if np.any(np.diff(self.across_deg) <= 0):
-            raise ValueError("across_deg that rises from pixel to pixel (if it falls, turn all signs)")
+        if (fallen := np.flatnonzero(np.diff(self.pixel) <= 0)).size:
+            raise ValueError(f"pixels that rise from row to row, as they do not after {self.pixel[fallen[0]]:g}")
+        if (fallen := np.flatnonzero(np.diff(self.across_deg) <= 0)).size:
+            where = f"as it does not after pixel {self.pixel[fallen[0]]:g} (if it falls everywhere, turn all signs)"
+            raise ValueError(f"across_deg that rises from pixel to pixel, {where}")
         return self
 
     @property

@@ -52,6 +52,17 @@ def test_sigma_at_the_centre_is_that_of_shift_and_turn():
     assert_allclose(np.sqrt(np.diag(found)), [np.hypot(0.01, 0.02), np.hypot(0.02, 0.01)], rtol=1e-5)
 
 
+def test_a_smile_moves_the_line_s_end_across():
+    """By smile x^2 of the range, and its sigma likewise."""
+    smiling = CAMERA.replaced(smile=0.01)
+    x = 300 / 1000
+    found = pixel_shift(FIRST, Mounted(smiling, np.zeros(6)), 600.0, RANGE_M)
+    assert_allclose(found, [0, 0.01 * x**2 * RANGE_M], atol=1e-12)
+    covariance = np.diag([*[0.0] * 8, 0.002**2])
+    of_shift = shift_covariance(FIRST, Mounted(smiling, np.zeros(6)), 600.0, RANGE_M, covariance, (*NAMES, "smile"))
+    assert_allclose(np.sqrt(np.diag(of_shift)), [0, 0.002 * x**2 * RANGE_M], atol=1e-9)
+
+
 def test_what_principal_point_and_turn_do_in_opposite_ways_cancels():
     """A turn about y by 1e-3 moves the centre as a principal point 1 px less does."""
     errors = np.array([0, 0, 0, 0, 1e-3, 0, 1.0, 0])

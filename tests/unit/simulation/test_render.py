@@ -21,8 +21,9 @@ def dot_centre(light, u, line, half_lines):
     return (excess.sum(axis=0) @ columns) / excess.sum(), (excess.sum(axis=1) @ rows) / excess.sum()
 
 
-@pytest.mark.parametrize("observation", [1, 2, 3])
-def test_rendered_dots_lie_at_the_exact_projections(camera, settings, observation):
+@pytest.mark.parametrize(("observation", "smile"), [(1, 0.0), (2, 0.0), (3, 0.0), (1, 0.3)])
+def test_rendered_dots_lie_at_the_exact_projections(camera, settings, observation, smile):
+    camera = camera.replaced(smile=smile)
     light = render(camera, settings, observation).light
     truth, lines = exact_projections(camera, settings), true_lines(camera, settings)
     speed = abs(settings.passes[observation - 1].speed_m_s)

@@ -14,9 +14,9 @@ LOOKS_DOWN = rotations.rotation_vector_from_matrix(np.array([[0.0, -1.0, 0.0], [
 POSE = np.concatenate([[0.3, -0.1, 0.05], LOOKS_DOWN])
 
 
-def camera(n_pixels=200, k1=0.0):
+def camera(n_pixels=200, **lens):
     return Camera(
-        focal_length_m=8e-3, pixel_pitch_m=16e-6, n_pixels=n_pixels, principal_point_px=(n_pixels - 1) / 2, k1=k1
+        focal_length_m=8e-3, pixel_pitch_m=16e-6, n_pixels=n_pixels, principal_point_px=(n_pixels - 1) / 2, **lens
     )
 
 
@@ -42,11 +42,11 @@ def scanned(lens, position, euler):
     return chess(ground).astype(np.float32)
 
 
-@pytest.mark.parametrize("k1", [0.0, 0.1])
+@pytest.mark.parametrize("distortion", [{}, {"k1": 0.1, "p2": 0.02, "tilt": 0.05, "smile": 1.0}], ids=["ideal", "bent"])
 @pytest.mark.parametrize("backwards", [False, True])
 @pytest.mark.parametrize("n_lines", [150, 1500])
-def test_every_cell_leads_back_to_a_tenth_of_a_pixel_and_shows_the_ground(n_lines, backwards, k1):
-    lens, (position, euler) = camera(k1=k1), drive(n_lines, backwards=backwards)
+def test_every_cell_leads_back_to_a_tenth_of_a_pixel_and_shows_the_ground(n_lines, backwards, distortion):
+    lens, (position, euler) = camera(**distortion), drive(n_lines, backwards=backwards)
     poses = line_poses(position, euler, POSE)
     rectified = rectify(scanned(lens, position, euler), poses, lens, flat_ground(0.0), CELL_M)
     row, column = np.nonzero(np.isfinite(rectified.line))
