@@ -11,8 +11,10 @@ with stage(snakemake) as log:
     from linepose.simulation.flown_record import write_flight
     from linepose.simulation.record import write_survey
     from linepose.simulation.settings import settings_from_dict
+    from linepose.simulation.true_camera import TrueCamera
 
     camera = Camera.model_validate(snakemake.params.camera)
+    camera = TrueCamera.model_validate(snakemake.params.true_camera or {}).instead_of(camera)
     folder = Path(snakemake.output.folder)
     if snakemake.params.flight is not None:
         flight = FlightSection.model_validate(snakemake.params.flight)

@@ -19,6 +19,7 @@ rule simulate:
         **LIGHT,
     params:
         camera=lambda wildcards: settings(wildcards)["camera"],
+        true_camera=lambda wildcards: settings(wildcards)["true_camera"],
         simulation=lambda wildcards: settings(wildcards)["simulation"],
         flight=lambda wildcards: settings(wildcards)["flight"],
         code=script_digest("simulate"),

@@ -287,7 +287,7 @@ def _simulated(settings: Platform) -> tuple[list[Finding], pd.DataFrame | None]:
         return [ok("data set", "a simulated flight, not made yet: its strips are checked as they are planned")], None
     if settings.simulation is None:
         return [], None
-    survey, _ = simulate_survey(settings.intrinsics(), settings.simulation, settings.simulation.seed)
+    survey, _ = simulate_survey(settings.true_intrinsics(), settings.simulation, settings.simulation.seed)
     found = f"simulated, not made yet: {len(settings.simulation.passes)} passes; checked without images"
     return [ok("data set", found)], table_from_survey(_with_numbers(survey))
 

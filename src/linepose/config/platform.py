@@ -32,6 +32,7 @@ from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, faults_of, validated
 from linepose.simulation.flight_section import FlightSection
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
+from linepose.simulation.true_camera import TrueCamera
 from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.navigation_corrections import MEANINGS as MEANINGS_OF_CORRECTIONS
 from linepose.survey.navigation_corrections import CorrectionName
@@ -120,6 +121,9 @@ class Platform(Settings):
     flight: FlightSection | None = Field(
         None, description="Or a simulated flight over textured ground, with a known truth."
     )
+    true_camera: TrueCamera | None = Field(
+        None, description="Of a simulated platform: the camera in truth, where it is another than `camera`."
+    )
     noise_model: NoiseModelName = Field(DEFAULT.name, description=f"The model of the noise. {MEANINGS}")
     prior: Literal["none", "hand_measured"] = Field(
         "hand_measured",
@@ -178,15 +182,29 @@ class Platform(Settings):
 
     @model_validator(mode="after")
     def _has_a_line_as_the_model_has(self) -> "Platform":
-        if noise_model(self.noise_model).removes_outliers and not self.camera.lens.is_straight:
+        if not noise_model(self.noise_model).removes_outliers:
+            return self
+        if not self.camera.lens.is_straight:
             raise ValueError(
                 f"noise_model adjustment with a line that is tilted or bent: {self.noise_model} takes it for straight"
             )
+        if others := [name for name in self.camera.uncertain_coefficients if name not in ("k1", "k2")]:
+            raise ValueError(f"noise_model adjustment with sigmas of {', '.join(others)}: {self.noise_model} has none")
+        return self
+
+    @model_validator(mode="after")
+    def _is_simulated_where_it_has_a_truth(self) -> "Platform":
+        if self.true_camera is not None and self.simulation is None and self.flight is None:
+            raise ValueError("a simulation or a flight with true_camera")
         return self
 
     def intrinsics(self) -> Camera:
         """The camera that geometry works with."""
         return self.camera
+
+    def true_intrinsics(self) -> Camera:
+        """The camera that takes a simulated platform's scans."""
+        return self.camera if self.true_camera is None else self.true_camera.instead_of(self.camera)
 
     def start_pose(self) -> Floats:
         """The hand-measured pose with a rotation vector (6,)."""

@@ -1,15 +1,18 @@
 """The CSV of view angles that a platform's file names."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import yaml
 
-from linepose.config.platform import load_platform
+from linepose.config.platform import Platform, load_platform
 from linepose.config.view_angles import read_view_angles
 from linepose.errors import InputError
 from linepose.geometry.camera import normalised_from_pixel
 from unit.made_up import PLATFORM
 
+CONFIG = Path(__file__).parents[3] / "config"
 ROWS = "pixel,across_deg,along_deg\n1,-2.0,0.1\n2,-1.0,0.0\n3,0.5,0.0\n4,2.0,0.1\n"
 
 
@@ -56,6 +59,26 @@ def test_columns_are_found_by_name_and_comments_passed_over(written):
 def test_what_is_no_table_is_told_in_one_line(written, rows, camera, found):
     with pytest.raises(InputError, match=found):
         load_platform(written(rows, **camera), "robot")
+
+
+def test_a_simulated_platform_may_have_another_camera_in_truth(written):
+    given = load_platform(CONFIG / "platforms", "ladybird-sim").model_dump(mode="json")
+    planted = Platform.model_validate(given | {"true_camera": {"smile": 0.02, "principal_point_px": 320.0}})
+    assert planted.true_intrinsics() == planted.camera.replaced(smile=0.02, principal_point_px=320.0)
+    assert Platform.model_validate(given).true_intrinsics() == planted.camera
+    path = written() / "robot.yaml"
+    path.write_text(path.read_text() + "true_camera: {smile: 0.02}\n")
+    with pytest.raises(InputError, match="a simulation or a flight with true_camera"):
+        load_platform(path.parent, "robot")
+
+
+def test_the_paper_s_models_have_no_sigmas_of_other_coefficients(written):
+    path = written(sigmas={"k3": 0.1}) / "robot.yaml"
+    text = path.read_text().replace("noise_model: adjustment", "noise_model: published")
+    path.write_text(text)
+    (path.parent / "angles.csv").write_text(ROWS.replace("0.1\n", "0.0\n"))
+    with pytest.raises(InputError, match="noise_model adjustment with sigmas of k3: published has none"):
+        load_platform(path.parent, "robot")
 
 
 def test_the_paper_s_models_take_no_bent_line(written):
