@@ -122,12 +122,17 @@ def diagnostics() -> pd.DataFrame:
             "neg_log_likelihood": 12.5,
             "reduced_chi_square": 0.9,
             "warning": "short",
-            **dict.fromkeys(("pareto_shape", "least_eigenvalue", "disagreement_sigmas"), np.nan),
         }
         for k, name in enumerate(POSE_COLUMNS)
     ]
-    unknown = dict.fromkeys(("pareto_shape", "least_eigenvalue", "disagreement_sigmas"), np.nan)
-    return pd.DataFrame(rows).assign(**unknown)
+    unknown = (
+        "pareto_shape",
+        "least_eigenvalue",
+        "disagreement_sigmas",
+        "sigma_without_target",
+        "target_misfit_sigmas",
+    )
+    return pd.DataFrame(rows).assign(**dict.fromkeys(unknown, np.nan))
 
 
 def residuals() -> pd.DataFrame:

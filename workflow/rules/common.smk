@@ -46,7 +46,7 @@ ADJUSTED_PLATFORMS = [
     name for name in PROJECT.platforms if name not in REMOVING_PLATFORMS
 ]
 KNOWING_PLATFORMS = [  # that know something of their points
-    name for name, one in PROJECT.platforms.items() if one.points is not None
+    name for name, one in PROJECT.platforms.items() if one.knows_points
 ]
 MAPPED_PLATFORMS = [  # whose file asks for their scans on the map
     name

@@ -26,6 +26,7 @@ from linepose.adjustment.result import Adjustment
 from linepose.adjustment.settings import AdjustmentSettings, default_hand_covariance
 from linepose.adjustment.start import start_points
 from linepose.adjustment.state import Knowledge, state_at
+from linepose.adjustment.with_board import adjusted_with_board
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
 from linepose.geometry.camera import Camera
@@ -81,6 +82,8 @@ def _adjusted(
     if measurements.n_views < 2 and not np.any(measurements.known.any):
         raise InputError("observations", "one observation", "two or more", "add observations of the same pattern")
     knowledge = Knowledge(camera, hand if settings.hand_measured_prior else None, settings.clock_offset_sigma_s)
+    if known_points is not None and np.any(measurements.known.on_board):
+        return adjusted_with_board(survey, known_points, measurements, knowledge, start, hand, settings)
     if measurements.n_points <= MANY_POINTS:
         return assembled(
             survey, measurements, knowledge, adjust_all(measurements, knowledge, start, hand, settings), settings

@@ -66,11 +66,11 @@ def adjust_all(
     settings: AdjustmentSettings,
 ) -> AllAtOnce:
     """The adjustment from a start pose (6,); raises EstimationError where there is no estimate."""
-    start = state_at(
-        start_pose, knowledge.camera, start_points(measurements, knowledge.camera, start_pose), measurements
-    )
-    guided = replace(knowledge, hand=hand)
     known = measurements.known
+    points = start_points(measurements, knowledge.camera, start_pose)
+    points = known.on_its_board(points, np.bincount(measurements.point, minlength=measurements.n_points))
+    start = state_at(start_pose, knowledge.camera, points, measurements)
+    guided = replace(knowledge, hand=hand)
     weight = _first_weights(measurements, guided, start, settings)
     for _ in range(_TURNS):
         counted = replace(measurements, known=known.weighted(weight))

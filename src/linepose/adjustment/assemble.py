@@ -6,8 +6,10 @@ import numpy as np
 import pandas as pd
 
 from linepose.adjustment.all_at_once import AllAtOnce
+from linepose.adjustment.board_fit import BoardFit
 from linepose.adjustment.estimate import Estimate
 from linepose.adjustment.hand_measured import HandMeasuredPrior
+from linepose.adjustment.known_board import N_BOARD_POSE
 from linepose.adjustment.levels import N_LEVELS
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import COMMON_SHIFT, N_POSE
@@ -39,8 +41,12 @@ def assembled(
     knowledge: Knowledge,
     done: AllAtOnce,
     settings: AdjustmentSettings,
+    board: BoardFit | None = None,
 ) -> Adjustment:
-    """The result on the survey's grid, from the fit of all measurements and what tells its levels and its spread."""
+    """The result on the survey's grid, from the fit of all measurements and what tells its levels and its spread.
+
+    board: what the known geometry of a board is worth, if there is one.
+    """
     fit, found, spread = done.fit, done.found, done.spread
     state, weights = fit.state, fit.weights
     _, sought_covariance = spread.moments()
@@ -48,8 +54,6 @@ def assembled(
     clock_offset_s = clock_sigma_s = np.nan
     if knowledge.clock_offset_sigma_s is not None:
         clock_offset_s, clock_sigma_s = state.clock_offset_s, float(np.sqrt(sought_covariance[0, 0]))
-    by_parameters = np.eye(N_POSE)
-    by_parameters[3:, 3:] = np.linalg.inv(rotations.left_jacobian_so3(state.pose[3:]))
     grid = measurements.row, measurements.column, survey.u_px.shape
     points = np.full((survey.n_points, 3), np.nan)
     points[measurements.points] = state.points_m
@@ -66,7 +70,7 @@ def assembled(
     constants[view_rows], view_weight[view_rows] = fit.q, weights.of_view
     return Adjustment(
         pose=state.pose,
-        covariance=by_parameters @ step_covariance @ by_parameters.T,
+        covariance=pose_covariance(state, spread),
         principal_point_px=state.principal_point_px,
         focal_length_m=state.focal_length_m,
         coefficients={name: float(getattr(state.lens, name)) for name in state.sought},
@@ -83,7 +87,7 @@ def assembled(
         measurement_weight=gridded(weights.of_measurement, *grid),
         normalised=gridded(fit.normalised, *grid),
         samples=_samples(state, spread, settings),
-        diagnostics=_diagnostics(measurements, knowledge, done, step_covariance, clock_sigma_s, survey.names),
+        diagnostics=_diagnostics(measurements, knowledge, done, step_covariance, clock_sigma_s, survey.names, board),
         known_weight=known[0],
         known_sigmas=known[1],
         common_shift_m=state.common_shift_m if shifted else np.nan,
@@ -91,6 +95,13 @@ def assembled(
         clock_offset_s=clock_offset_s,
         clock_offset_sigma_s=clock_sigma_s,
     )
+
+
+def pose_covariance(state: State, spread: Mixture) -> Floats:
+    """Covariance (6, 6) of the pose's parameters at a state."""
+    by_parameters = np.eye(N_POSE)
+    by_parameters[3:, 3:] = np.linalg.inv(rotations.left_jacobian_so3(state.pose[3:]))
+    return np.asarray(by_parameters @ spread.moments()[1][-N_POSE:, -N_POSE:] @ by_parameters.T)
 
 
 def _samples(state: State, spread: Mixture, settings: AdjustmentSettings) -> pd.DataFrame:
@@ -129,6 +140,7 @@ def _diagnostics(
     covariance: Floats,
     clock_sigma_s: float,
     names: np.ndarray,
+    board: BoardFit | None,
 ) -> Diagnostics:
     fit, found, curved, spread = done.fit, done.found, done.curved, done.spread
     disagreement = np.full(N_POSE, np.nan)
@@ -149,6 +161,7 @@ def _diagnostics(
             )
             for row in done.known.contradicting
         ),
+        board=board,
         clock_known=not clock_sigma_s > _OPEN_SHARE * (knowledge.clock_offset_sigma_s or np.inf),
     )
     return Diagnostics(
@@ -166,6 +179,7 @@ def _degrees_of_freedom(measurements: Measurements, knowledge: Knowledge) -> int
     """Equations less unknowns; a parameter of which something is known beforehand has an equation of its own."""
     unknown = 3 * measurements.n_points + (0 if knowledge.hand is not None else N_POSE)
     known = int(np.linalg.matrix_rank(measurements.known.information).sum() + measurements.known.on_surface.sum())
+    known += max(3 * int(measurements.known.on_board.sum()) - N_BOARD_POSE, 0)
     return 2 * len(measurements.u_px) - unknown + known
 
 

@@ -16,7 +16,6 @@ from linepose.survey.covariance_rule import NEGATIVE, correlations
 from linepose.survey.observations import Survey
 
 _ONE_CLOCK: Final = "correct the time stamps: those of all views are of one clock"
-_RAYS: Final = 2  # that a point needs, of which nothing else is known
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,7 @@ def measurements_from_survey(
     """
     known = nothing_known(survey.n_points) if known is None else known.checked(survey.n_points)
     seen = np.isfinite(survey.u_px)
-    usable = (seen.sum(axis=0) >= _RAYS) | (seen.any(axis=0) & known.any)
+    usable = known.usable(seen.sum(axis=0))
     row, column = np.nonzero(seen & usable)
     if len(row) == 0:
         raise InputError(

@@ -11,6 +11,7 @@ one.
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
 from linepose.adjustment.linearise import Linearised
@@ -29,13 +30,15 @@ class Prior(NamedTuple):
     """What is known beside the measurements, as quadratic forms about the present estimate.
 
     camera (10 + C, 10 + C), camera_vector (10 + C,): information of the camera's columns, and its product with what the
-    step ought to be; points (K, 3, 3), points_vector (K, 3): the same of points; chi_squared: with no step.
+    step ought to be; points (K, 3, 3), points_vector (K, 3): the same of points; board (3 K, 3 K): information that
+    ties points of a board together, (0, 0) without one; chi_squared: with no step.
     """
 
     camera: Floats
     camera_vector: Floats
     points: Floats
     points_vector: Floats
+    board: Floats
     chi_squared: float
 
 
@@ -147,6 +150,9 @@ def one_pass(rows: Floats, process: Components, view: np.ndarray, begins: np.nda
             upper[3 * point + i, n - 1] += prior.points_vector[point, i]
             for j in range(i, 3):
                 upper[3 * point + i, 3 * point + j] += prior.points[point, i, j]
+    for i in range(prior.board.shape[0]):
+        for j in range(i, prior.board.shape[0]):
+            upper[i, j] += prior.board[i, j]
     for i in range(n_camera):
         upper[first + i, n - 1] += prior.camera_vector[i]
         for j in range(i, n_camera):
@@ -213,11 +219,23 @@ def point_covariances(upper: Floats, shifts: Floats) -> Floats:
 
     shifts (K,): which of them follow the common shift downwards.
     """
+    rows = _point_rows(upper, shifts)
+    return np.asarray(rows @ np.swapaxes(rows, 1, 2))
+
+
+def joint_covariance(upper: Floats, shifts: Floats, which: NDArray[np.bool_]) -> Floats:
+    """Covariance (3 n, 3 n) of n of the points (K,) together."""
+    rows = _point_rows(upper, shifts)[which].reshape(3 * int(which.sum()), -1)
+    return np.asarray(rows @ rows.T)
+
+
+def _point_rows(upper: Floats, shifts: Floats) -> Floats:
+    """Root (K, 3, n) of the points' covariance, by a factor (n, n) with its residual column."""
     n, n_points = upper.shape[0] - 1, len(shifts)
     inverse = solve_triangular(np.triu(upper[:n, :n]), np.eye(n))
     rows = inverse[: 3 * n_points].reshape(n_points, 3, n).copy()
     rows[:, 2] += shifts[:, None] * inverse[COMMON_SHIFT]
-    return np.asarray(rows @ np.swapaxes(rows, 1, 2))
+    return np.asarray(rows)
 
 
 @kernel

@@ -41,7 +41,7 @@ def predicted_covariance(
     hand = None if hand_covariance is None else hand_measured(pose, hand_covariance)
     state = state_at(pose, camera, np.ascontiguousarray(points_m[measurements.points]), measurements)
     knowledge, used = Knowledge(camera, hand), levels if measurements.timed else levels._replace(drift=0.0)
-    if measurements.n_points > _DENSE_POINTS:
+    if measurements.n_points > _DENSE_POINTS and not np.any(measurements.known.on_board):
         return covariance_of_many(measurements, knowledge, state, used)[-N_POSE:, -N_POSE:]
     model = model_at(measurements, knowledge, state)
     if model is None:

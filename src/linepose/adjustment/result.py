@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from linepose.adjustment.board_fit import BoardFit
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.thresholds import (
     DISAGREEMENT_SIGMAS,
@@ -37,7 +38,7 @@ class Quality:
     levels; disagreement_sigmas (6,): of the hand measurement from what the data alone say, NaN without one;
     open_directions: names of the pose's parameters that the data leave to the hand measurement; drift_known: whether
     there are times; clock_known: whether the data tell the clock offset, where it is sought; contradictions: known
-    points that the rest contradicts, the worst first.
+    points that the rest contradicts, the worst first; board: how a board's known geometry fits, None without one.
     """
 
     converged: bool
@@ -49,6 +50,7 @@ class Quality:
     drift_known: bool
     clock_known: bool
     contradictions: tuple[Contradiction, ...] = field(default=(), kw_only=True)
+    board: BoardFit | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -167,6 +169,10 @@ def warnings_of(quality: Quality) -> tuple[str, ...]:
         f"{one.weight:.2g} of what is stated: correct its coordinates, its sigmas or its label"
         for one in quality.contradictions[:_NAMED]
     )
+    if quality.board is not None and not quality.board.counts:
+        said.append(": ".join(quality.board.in_words()))
+    if quality.board is not None and np.isnan(quality.board.misfit_sigmas):
+        said.append("only the target's known geometry makes an estimate possible: nothing can contradict it")
     if quality.open_directions:
         said.append(f"the data leave {', '.join(quality.open_directions)} to the hand measurement: add other motions")
     if not quality.clock_known:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linepose.adjustment.hand_measured import HandMeasuredPrior
+from linepose.adjustment.known_board import knowledge_of_board, moved_with_board
 from linepose.adjustment.linearise import Linearised, Optics, empty_linearised, linearise
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.normal import CLOCK_OFFSET, COMMON_SHIFT, N_POSE, Prior
@@ -22,7 +23,8 @@ class State:
     which the coefficients `sought` are estimated; clock_offset_s: what is added to the scan's time stamps to get the
     navigation's time; points_m (K, 3); correction (L, 6): of the
     body poses, beside what the clock offset moves them; shifts (K,): which points follow the common shift, and
-    common_shift_m: how far below its source's heights the ground is.
+    common_shift_m: how far below its source's heights the ground is; board_m (K, 3): points in the board's own frame,
+    NaN for those of no board.
     """
 
     position_m: Floats
@@ -35,6 +37,7 @@ class State:
     points_m: Floats
     correction: Floats
     shifts: Floats
+    board_m: Floats
     common_shift_m: float = 0.0
 
     @property
@@ -69,6 +72,10 @@ class State:
         shift_m = float(camera[COMMON_SHIFT])
         down = np.array([0.0, 0.0, 1.0])
         turn = rotations.matrix_from_rotation_vector(pose[3:])
+        moved = self.points_m + points
+        board = np.isfinite(self.board_m[:, 0])
+        if np.any(board):
+            moved[board] = moved_with_board(self.board_m[board], self.points_m[board], points[board])
         return State(
             self.position_m + pose[:3],
             turn @ self.rotation,
@@ -77,9 +84,10 @@ class State:
             self.lens.at(found),
             self.sought,
             self.clock_offset_s + float(camera[CLOCK_OFFSET]),
-            self.points_m + points + shift_m * self.shifts[:, None] * down,
+            moved + shift_m * self.shifts[:, None] * down,
             correction,
             self.shifts,
+            self.board_m,
             self.common_shift_m + shift_m,
         )
 
@@ -112,6 +120,7 @@ def state_at(pose: Floats, camera: Camera, points_m: Floats, measurements: Measu
         points_m,
         np.zeros((len(measurements.u_px), 6)),
         measurements.known.shifts,
+        measurements.known.board_m,
     )
 
 
@@ -166,9 +175,15 @@ class Knowledge:
         off = position_m - state.points_m
         off[:, 2] += state.common_shift_m * known.shifts
         points_vector = np.einsum("kij,kj->ki", points_information, off)
-        return Prior(
-            information, vector, points_information, points_vector, chi_squared + float(np.sum(off * points_vector))
-        )
+        chi_squared += float(np.sum(off * points_vector))
+        board, rows = np.zeros((0, 0)), known.on_board
+        if np.any(rows):
+            told = knowledge_of_board(known.board_m[rows], known.board_sigma_m, state.points_m[rows])
+            board = np.zeros((off.size, off.size))
+            board[np.ix_(np.repeat(rows, 3), np.repeat(rows, 3))] = told.information
+            points_vector[rows] += told.vector.reshape(-1, 3)
+            chi_squared += told.chi_squared
+        return Prior(information, vector, points_information, points_vector, board, chi_squared)
 
 
 def linearised_at(measurements: Measurements, knowledge: Knowledge, state: State) -> Linearised | None:

@@ -6,6 +6,7 @@ TRUSTED_EIGENVALUE: Final = 0.3  # the least one below which the covariance is n
 TRUSTED_SHAPE: Final = 0.7  # of the Pareto tail, above which the weights cannot be trusted
 FEWEST_EFFECTIVE_DRAWS: Final = 20.0
 DISAGREEMENT_SIGMAS: Final = 3.0  # of data and hand measurement
+MISFIT_SIGMAS: Final = 4.0  # of a board's known geometry, from which on it is not used
 CLOCK: Final = "clock"
 LABEL: Final = "label"
 JUMP: Final = "jump"

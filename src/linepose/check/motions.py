@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.prediction import predicted_covariance
 from linepose.adjustment.result import Adjustment
 from linepose.arrays import Floats
@@ -50,16 +51,19 @@ def spread_in_words(survey: Survey) -> str:
 
 @dataclass(frozen=True)
 class Promise:
-    """What predictions rest on: camera, adjustment of the present passes, covariance (6, 6) of a prior if there is."""
+    """What predictions rest on: camera, present adjustment, covariance (6, 6) of a prior, what is known of points."""
 
     camera: Camera
     adjusted: Adjustment
     hand_covariance: Floats | None
+    known_points: KnownPoints | None = None
 
     def covariance(self, survey: Survey, point_m: Floats) -> Floats:
         """Covariance (6, 6) of a survey of points (M, 3), at the levels that the present passes have."""
-        found = self.adjusted
-        return predicted_covariance(survey, self.camera, found.pose, point_m, found.levels, self.hand_covariance)
+        found, known = self.adjusted, self.known_points
+        if known is not None and found.diagnostics.board is not None and not found.diagnostics.board.counts:
+            known = known.without_board
+        return predicted_covariance(survey, self.camera, found.pose, point_m, found.levels, self.hand_covariance, known)
 
 
 def motions(survey: Survey, promise: Promise, point_m: Floats) -> tuple[Motion, ...]:

@@ -18,7 +18,7 @@ def point_findings(
     settings: Platform, folder: Path, observations: pd.DataFrame
 ) -> tuple[list[Finding], KnownPoints | None]:
     """Findings on control points and ground, and what is known of the points; None where nothing is."""
-    if settings.points is None:
+    if not settings.knows_points:
         return [], None
     try:
         known = known_of_platform(settings, folder, observations)
@@ -28,4 +28,7 @@ def point_findings(
     found = f"something is known of {len(known)} points"
     if shared:
         found += f", of {shared} a height that errs in common"
+    on_board = [one.board_sigma_m for one in known.values() if one.board_sigma_m is not None]
+    if on_board:
+        found += f", of {len(on_board)} the place on the target, to {1e3 * on_board[0]:g} mm"
     return [ok(_SUBJECT, found)], known_of_survey(known, survey_from_table(observations))

@@ -77,6 +77,8 @@ def predict(
         warning("known points", f"point {one.point} is {one.sigmas:.1f} sigmas off what all else says", _CONTRADICTING)
         for one in adjusted.diagnostics.contradictions
     )
+    if (board := adjusted.diagnostics.board) is not None and not board.counts:
+        against += (warning("known points", *board.in_words()),)
     names, in_axes = in_body_axes(POSE_COLUMNS, adjusted.pose, adjusted.covariance)
     sigma, by_hand = np.sqrt(np.diag(in_axes)), np.sqrt(np.diag(hand.body_covariance))
     sigmas = tuple(
@@ -91,7 +93,7 @@ def predict(
     worst = max(large, key=lambda one: one.predicted / one.hand)
     told = ", ".join(f"{one.name} {size(one.predicted, one.unit)} ({size(one.hand, one.unit)})" for one in large)
     found = f"less than twice as good as by hand: {told}; known least: {words}; {spread_in_words(survey)}"
-    promise = Promise(camera, adjusted, hand.body_covariance if prior else None)
+    promise = Promise(camera, adjusted, hand.body_covariance if prior else None, known_points)
     ranked = best_motions(motions(ideal, promise, point_m), sigmas.index(worst))
     ways = "; or ".join(f"{way}: {worst.name} to {size(value, worst.unit)}" for way, value in ranked[:2])
     advice = f"drive four more passes {ways}" if ways else "add passes from other sides and with other tilts"

@@ -36,6 +36,7 @@ from linepose.simulation.true_camera import TrueCamera
 from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.navigation_corrections import MEANINGS as MEANINGS_OF_CORRECTIONS
 from linepose.survey.navigation_corrections import CorrectionName
+from linepose.survey.targets.base import GridSection
 from linepose.survey.targets.registry import Target
 from linepose.survey.targets.rings import RingsSection
 
@@ -166,6 +167,21 @@ class Platform(Settings):
         if self.flight is not None:
             return self.flight.true_pose
         return None if self.simulation is None else np.array(self.simulation.true_pose)
+
+    @model_validator(mode="after")
+    def _can_use_target(self) -> "Platform":
+        if not (isinstance(self.target, GridSection) and self.target.known):
+            return self
+        if noise_model(self.noise_model).removes_outliers:
+            raise ValueError(f"noise_model adjustment with target.known: {self.noise_model} has no use for it")
+        if isinstance(self.source, ScansSection) and self.source.points == "matching":
+            raise ValueError("source.points detection or labels with target.known: tie points lie on no target")
+        return self
+
+    @property
+    def knows_points(self) -> bool:
+        """Whether something is known of points beside their measurements."""
+        return self.points is not None or (isinstance(self.target, GridSection) and self.target.known)
 
     @model_validator(mode="after")
     def _can_use_points(self) -> "Platform":

@@ -8,6 +8,7 @@ from linepose.adjustment.lost_weight import most_lost_by_tails
 from linepose.adjustment.thresholds import (
     CAUSES,
     FEWEST_EFFECTIVE_DRAWS,
+    MISFIT_SIGMAS,
     TRUSTED_EIGENVALUE,
     TRUSTED_SHAPE,
 )
@@ -106,6 +107,20 @@ def times(adjusted: AdjustedEvidence) -> Check:
         "The measurements have no times that differ: drift of the navigation is not known and not allowed for.",
         "Give the times (time_us): where the navigation drifts the sigmas are too small without them.",
         "without times drift of the navigation is not allowed for",
+    )
+
+
+def known_target(misfit: float) -> Check:
+    """Whether the target's known geometry, so many sigmas off what is seen without it, could be used."""
+    found = f"The target's known geometry is {max(misfit, 0.0):.1f} sigmas off what is seen without it"
+    if misfit <= MISFIT_SIGMAS:
+        return Check("Known target", Level.GOOD, f"{found}, and counts.")
+    return Check(
+        "Known target",
+        Level.CARE,
+        f"{found}, and was not used.",
+        "Correct the dimensions of target, the ids of the labels, or target.sigma_m.",
+        f"the target's known geometry is {misfit:.0f} sigmas off",
     )
 
 

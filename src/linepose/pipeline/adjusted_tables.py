@@ -157,6 +157,7 @@ def _objective(found: Adjustment) -> dict[str, object]:
 
 def _diagnostics(survey: Survey, found: Adjustment) -> pd.DataFrame:
     told, poses = found.diagnostics, found.samples[list(POSE_COLUMNS)].to_numpy()
+    board = told.board
     half = len(poses) // 2
     r_hat = split_r_hat(poses[: 2 * half].reshape(2, half, -1).swapaxes(0, 1))
     return pd.DataFrame(
@@ -175,6 +176,8 @@ def _diagnostics(survey: Survey, found: Adjustment) -> pd.DataFrame:
             "pareto_shape": told.pareto_shape,
             "least_eigenvalue": told.least_eigenvalue,
             "disagreement_sigmas": told.disagreement_sigmas,
+            "sigma_without_target": np.full(len(POSE_COLUMNS), np.nan) if board is None else board.sigma_without,
+            "target_misfit_sigmas": np.nan if board is None else board.misfit_sigmas,
             "warning": "; ".join(told.warnings),
         }
     )

@@ -67,6 +67,7 @@ class AdjustedEvidence:
     navigation_error: float = 1.0
     lost: tuple[LostMeasurement, ...] = ()
     n_measurements: int = 0
+    target_misfit: float | None = None
 
 
 @dataclass(frozen=True)

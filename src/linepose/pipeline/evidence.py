@@ -138,6 +138,7 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:
             for observation, point, weight in zip(lost["observation"], lost["point"], lost["weight"], strict=True)
         ),
         n_measurements=len(single),
+        target_misfit=float(misfit) if np.isfinite(misfit := chain["target_misfit_sigmas"].iloc[0]) else None,
     )
 
 

@@ -1,7 +1,8 @@
-"""What is known of a platform's points, from its files: control points, and the ground of all others."""
+"""What is known of a platform's points, from its files: control points, the ground of all others, the target."""
 
 import logging
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,12 +24,13 @@ from linepose.inputs.local_frame import LocalFrame, projected_frame, tangent_fra
 from linepose.inputs.terrain import read_terrain
 from linepose.pipeline.load import map_frame_table
 from linepose.survey.observations import Survey, survey_from_table
-from linepose.survey.point_knowledge import PointKnowledge, arrays_of
+from linepose.survey.point_knowledge import PointKnowledge, arrays_of, board_of
+from linepose.survey.targets.base import GridSection, TargetSection
 
 _SIGMAS: Final = 4.0  # by which control points may lie off where scans see them
 _LEAST_M: Final = 2.0  # ... but no less than this
 _COVERED: Final = 0.5  # of the points, below which a height model is not the survey's
-_FEWEST: Final = 3  # control points that tell a shift in common
+_FEWEST: Final = 3  # control points that tell a shift in common, and points of a target that tell its pose
 _DAMPING: Final = 1e-4
 _ROUNDS: Final = 5
 
@@ -58,7 +60,7 @@ def names_of_points(survey: Survey) -> list[str]:
 
 def known_of_platform(platform: Platform, folder: Path, observations: pd.DataFrame) -> dict[str, PointKnowledge]:
     """The same from a table of observations and what the platform's file or its log says of its place on the Earth."""
-    if platform.points is None:
+    if not platform.knows_points:
         return {}
     section = None if platform.map_frame is None else platform.map_frame.model_dump()
     frame = survey_frame(section, map_frame_table(platform, folder))
@@ -69,10 +71,34 @@ def known_points(
     platform: Platform, folder: Path, survey: Survey, frame: LocalFrame | None
 ) -> dict[str, PointKnowledge]:
     """What is known of the points of a survey, by name; raises InputError for what cannot be used."""
-    section = platform.points
-    if section is None:
-        return {}
+    known: dict[str, PointKnowledge] = {} if platform.points is None else _placed(platform, folder, survey, frame)
+    return _with_target(platform.target, survey, known)
+
+
+def _with_target(target: TargetSection, survey: Survey, known: dict[str, PointKnowledge]) -> dict[str, PointKnowledge]:
+    """The same with the target's geometry, where it was measured."""
+    if not isinstance(target, GridSection) or not target.known:
+        return known
+    names = np.array(names_of_points(survey))
+    seen = set(names[np.isfinite(survey.u_px).any(axis=0)])
+    of_target = dict(zip(map(str, target.ids()), target.points(), strict=True))
+    on_board = {name: place for name, place in of_target.items() if name in seen}
+    if len(on_board) < _FEWEST:
+        found = f"{len(on_board)} of its {len(of_target)} points in the scans"
+        remedy = "give the labels the ids that `linepose target` prints, or leave target.known out"
+        raise InputError("target.known", found, f"{_FEWEST} or more", remedy)
+    nothing = PointKnowledge(np.zeros(3), np.zeros((3, 3)))
+    return known | {
+        name: replace(known.get(name, nothing), board_m=place, board_sigma_m=target.sigma_m)
+        for name, place in on_board.items()
+    }
+
+
+def _placed(platform: Platform, folder: Path, survey: Survey, frame: LocalFrame | None) -> dict[str, PointKnowledge]:
+    """What is known of where points lie in the world."""
     known: dict[str, PointKnowledge] = {}
+    section = platform.points
+    assert section is not None
     if section.control_points is not None:
         path = folder / section.control_points
         control = read_control_points(path, section.crs, frame, section.height_offset_m)
@@ -94,7 +120,9 @@ def known_of_survey(known: Mapping[str, PointKnowledge], survey: Survey) -> Know
     """The same as the adjustment takes it; None where nothing is known."""
     if not known:
         return None
-    return KnownPoints(*arrays_of(known, names_of_points(survey), survey.origin_m))
+    names = names_of_points(survey)
+    board_m, sigma_m = board_of(known, names)
+    return KnownPoints(*arrays_of(known, names, survey.origin_m), board_m=board_m, board_sigma_m=sigma_m)
 
 
 def _ground(

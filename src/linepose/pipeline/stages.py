@@ -46,6 +46,7 @@ DIAGNOSTICS: Final = pa.schema(
             "reduced_chi_square",
         ),
         *optional_floats("pareto_shape", "least_eigenvalue", "disagreement_sigmas"),
+        *optional_floats("sigma_without_target", "target_misfit_sigmas"),
         *texts("warning"),
     ]
 )
@@ -144,6 +145,8 @@ def diagnostics_table(optima: pd.DataFrame, diagnostics: Mapping[str, ChainDiagn
                     "pareto_shape": np.nan,
                     "least_eigenvalue": np.nan,
                     "disagreement_sigmas": np.nan,
+                    "sigma_without_target": np.nan,
+                    "target_misfit_sigmas": np.nan,
                     "warning": chain.warning,
                 }
             )

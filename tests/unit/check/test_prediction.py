@@ -1,8 +1,11 @@
 """Replayed surveys see what they must, and predicted sigmas are those of the calibrations that they stand for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.prediction import predicted_covariance
 from linepose.adjustment.process import ACROSS_FLOOR_PX
@@ -21,6 +24,7 @@ from linepose.likelihood.published import PublishedLikelihood
 from linepose.simulation.survey import simulate_survey, without_faults
 from linepose.survey.body_angles import body_angles_rad
 from linepose.survey.hand_measured import HandMeasured
+from linepose.survey.pattern import board_points
 from unit.recorded_files import simulated_survey
 
 
@@ -165,6 +169,27 @@ def test_motion_that_lacks_is_found(measured):
     assert "4 deg" in best[0][0]
     assert best[0][1] < 0.7 * plain
     assert plain < np.sqrt(promise.covariance(ideal, points)[2, 2])
+
+
+def test_a_known_target_narrows_what_is_promised_and_a_wrong_one_is_told(measured):
+    survey, camera, pose, points = measured
+    few = survey.select([int(number) for number in survey.number[:6]])
+    hand, board_m = by_hand(pose), board_points()
+    nothing = np.zeros((len(board_m), 3)), np.zeros((len(board_m), 3, 3))
+    right = KnownPoints(*nothing, board_m=board_m, board_sigma_m=0.001)
+    wrong = KnownPoints(*nothing, board_m=1.2 * board_m, board_sigma_m=0.001)
+    told, plain = (predict(few, camera, hand, True, points, known) for known in (right, wrong))
+    assert all(a.predicted < 1.05 * b.predicted for a, b in zip(told.sigmas, plain.sigmas, strict=True))
+    assert not [one for one in told.findings if one.subject == "known points"]
+    against = next(one for one in plain.findings if one.subject == "known points")
+    assert "is not used; the scans show it 0.8" in against.found
+    ideal = replayed(few, camera, pose, points)
+    used, unused = (Promise(camera, one.adjusted, None, known) for one, known in ((told, right), (plain, wrong)))
+    free = replace(used, known_points=None).covariance(ideal, points)
+    assert np.all(np.diag(used.covariance(ideal, points)) < np.diag(free))
+    np.testing.assert_array_equal(
+        unused.covariance(ideal, points), replace(unused, known_points=None).covariance(ideal, points)
+    )
 
 
 def test_error_that_a_hand_measurement_explains(measured, platform):

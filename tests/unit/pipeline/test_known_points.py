@@ -1,6 +1,7 @@
 """Control points and ground, from a platform's files to what the adjustment takes; and what cannot be used is told."""
 
 import logging
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,13 +27,14 @@ def flight():
     return simulate_flight(FlightSettings(n_points=12, relief_m=0.0), 3)
 
 
-def platform(flight, **points):
+def platform(flight, target=None, **points):
     euler = np.rad2deg(euler_from_rotation_vector(flight.hand_pose[3:])).tolist()
     return Platform(
         camera=flight.camera,
         hand_measured={"position_m": flight.hand_pose[:3].tolist(), "euler_deg": euler},
         source={"kind": "labelled_views", "dataset": "flight"},
-        points=points,
+        points=points or None,
+        **({} if target is None else {"target": target}),
     )
 
 
@@ -174,3 +176,56 @@ def test_the_section_is_closed_and_needs_the_adjustment(flight):
     values = platform(flight, ground={"height_m": 0.0, "sigma_m": 1.0}).model_dump() | {"noise_model": "published"}
     with pytest.raises(InputError, match="has no use for them"):
         Platform(**values)
+
+
+CHESSBOARD = {"kind": "chessboard", "rows": 4, "columns": 5, "known": True, "sigma_m": 0.001}  # 12 corners
+
+
+def test_a_known_target_s_points_have_places_in_its_frame(flight, tmp_path):
+    asked = platform(flight, CHESSBOARD)
+    known = known_points(asked, tmp_path, flight.survey, None)
+    again = known_of_survey(knowledge_from_table(knowledge_table(known)), flight.survey)
+    np.testing.assert_array_equal(again.board_m, asked.target.points())
+    assert again.board_sigma_m == 0.001
+    assert not again.any.any()
+
+
+def test_a_known_target_stands_beside_control_points(flight, tmp_path):
+    write_control(tmp_path, flight.points_m[:2], "id,north_m,east_m,down_m,sigma_m")
+    known = known_points(platform(flight, CHESSBOARD, control_points="control.csv"), tmp_path, flight.survey, None)
+    taken = known_of_survey(known, flight.survey)
+    assert taken.apart.sum() == 2
+    assert taken.on_board.all()
+
+
+def test_points_without_a_target_have_no_place_in_its_frame(flight, tmp_path):
+    write_control(tmp_path, flight.points_m[:2], "id,north_m,east_m,down_m,sigma_m")
+    known = known_points(platform(flight, control_points="control.csv"), tmp_path, flight.survey, None)
+    taken = known_of_survey(knowledge_from_table(knowledge_table(known)), flight.survey)
+    assert not taken.on_board.any()
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"target": CHESSBOARD | {"sigma_m": None}}, "sigma_m with known: true"),
+        ({"target": CHESSBOARD, "noise_model": "published"}, "noise_model adjustment with target.known"),
+        (
+            {
+                "target": CHESSBOARD,
+                "source": {"kind": "scans", "dataset": "x", "points": "matching", "matching": {"ground_height_m": 0.0}},
+            },
+            "source.points detection or labels with target.known",
+        ),
+        ({"target": {"kind": "points", "known": True}}, r"target\.known: found an unknown key"),
+    ],
+)
+def test_a_target_that_cannot_be_known_is_refused(flight, change, told):
+    with pytest.raises(InputError, match=told):
+        Platform(**platform(flight).model_dump() | change)
+
+
+def test_a_known_target_of_other_ids_is_told(flight, tmp_path):
+    names = np.array([f"stone {k}" for k in range(12)], dtype=object)
+    with pytest.raises(InputError, match=r"target.known.*0 of its 12 points in the scans.*3 or more"):
+        known_points(platform(flight, CHESSBOARD), tmp_path, replace(flight.survey, names=names), None)

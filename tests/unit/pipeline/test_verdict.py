@@ -144,6 +144,7 @@ def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
         ({"effective_draws": 19.0}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
         ({"drift_known": False}, "Times", Level.CARE, "Give the times"),
         ({"least_eigenvalue": float("nan")}, "Curvature", Level.BAD, "other checks"),
+        ({"target_misfit": 4.1}, "Known target", Level.CARE, "target.sigma_m"),
         ({"navigation_error": 3.1}, "Size of the errors", Level.CARE, "units"),
         ({"navigation_error": 10.1}, "Size of the errors", Level.BAD, "linepose check"),
         ({"pareto_shape": 0.71}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
@@ -167,6 +168,12 @@ def test_each_fault_of_an_adjustment_is_named_with_what_to_do(change, name, leve
     assert (check.level, verdict.level) == (level, level)
     assert advice in check.advice
     assert verdict.reasons == (check,)
+
+
+def test_a_known_target_that_fits_is_told():
+    check = named(judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, target_misfit=-0.4))), "Known target")
+    assert check.level == Level.GOOD
+    assert "0.0 sigmas off" in check.found
 
 
 def test_a_few_views_that_are_far_off_are_told_and_no_reason_to_doubt():

@@ -11,6 +11,7 @@ from linepose.output.adjusted import Halves, halves, has_adjustment, is_adjusted
 from linepose.output.report.adjustment_on_page import halves_table, level_table, pose_table, sigma_table, view_table
 from linepose.output.report.adjustment_words import FAULT_WORDS, boresight_sentence, levels_sentence, sigmas_sentence
 from linepose.output.report.intrinsics import intrinsics_on_page, intrinsics_sentence
+from linepose.output.report.known_target import knows_target, target_sentence, target_table
 from linepose.output.report.sections import SectionOnPage
 from linepose.pipeline.adjusted_schemas import MEASUREMENTS, VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
@@ -36,6 +37,7 @@ def adjustment_section(calibration: Calibration) -> SectionOnPage | None:
         sigmas_sentence(levels),
         boresight_sentence(first, _duration_s(calibration), _reported_rad(calibration)),
         views_sentence(views),
+        target_sentence(calibration) if own and knows_target(calibration) else "",
         *_warnings(calibration),
     ]
     camera = calibration.intrinsics if own else None
@@ -45,6 +47,7 @@ def adjustment_section(calibration: Calibration) -> SectionOnPage | None:
     tables = [] if own else [pose_table(f"{anchor}-poses", calibration)]
     tables += [level_table(f"{anchor}-levels", levels), sigma_table(f"{anchor}-sigmas", levels)]
     tables += [] if camera is None else [intrinsics_on_page(f"{anchor}-camera", camera)]
+    tables += [target_table(f"{anchor}-target", calibration)] if own and knows_target(calibration) else []
     tables += [halves_table(f"{anchor}-halves", found)] if found else []
     tables.append(view_table(f"{anchor}-views", views))
     title = "What the errors were" if own else "The adjustment"

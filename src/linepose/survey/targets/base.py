@@ -5,7 +5,7 @@ from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import PositiveInt
+from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from linepose.arrays import Floats
 from linepose.settings import Settings
@@ -61,6 +61,19 @@ class GridSection(TargetSection):
 
     rows: PositiveInt
     columns: PositiveInt
+    known: bool = Field(
+        False, description="Whether its dimensions were measured and count in the adjustment; needs `sigma_m`."
+    )
+    sigma_m: PositiveFloat | None = Field(
+        None,
+        description="How far points lie off these dimensions in each direction, as one sigma (m): print and bend.",
+    )
+
+    @model_validator(mode="after")
+    def _is_known_to_a_sigma(self) -> Self:
+        if self.known and self.sigma_m is None:
+            raise ValueError("sigma_m with known: true")
+        return self
 
     @classmethod
     def scaled(cls, rows: int | None, columns: int | None, spacing_m: float | None) -> Self:

@@ -61,7 +61,7 @@ class RingsSection(GridSection):
         lengths = {
             name: round(fields[name].default * scale, _DIGITS)
             for name in fields
-            if name.endswith("_m") and name != "corner_mark_offset_m"
+            if name.endswith("_m") and isinstance(fields[name].default, float)
         }
         x, y = fields["corner_mark_offset_m"].default
         return cls(

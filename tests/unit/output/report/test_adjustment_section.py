@@ -8,7 +8,9 @@ from linepose.output.report.adjustment_words import boresight_sentence, levels_s
 from linepose.output.report.page import PlatformOnPage, render_platform_page
 from linepose.output.report.platform_sections import leading_sections, platform_sections
 from linepose.pipeline.calibration import Calibration
+from linepose.pipeline.stages import DIAGNOSTICS
 from linepose.pipeline.summary import summarise
+from linepose.tables import read_table, write_table
 from unit import made_up
 from unit.made_up_adjustment import adjusted_measurements, adjusted_views, levels
 
@@ -149,3 +151,20 @@ def test_the_page_of_an_adjusted_platform_speaks_of_weights(adjusted):
     assert "all 6 observations, each with its weight, half of chi squared 12.500" in page
     assert "accepted" not in page[: page.index("made-up-pose")]
     assert '<p class="care">Warning: few draws.</p>' in page
+
+
+def test_a_known_target_is_told_with_the_sigmas_with_and_without(adjusted, tmp_path):
+    assert "Known target" not in [table.title for table in adjustment_section(adjusted).tables]
+    folder = tmp_path / "made-up"
+    made_up.write_adjusted_results(folder)
+    table = read_table(folder / "diagnostics.parquet", DIAGNOSTICS)
+    without = 2.0 * table["laplace_sigma"] * [1, 1, 2, 1, 1, 1]
+    fits = table.assign(sigma_without_target=without, target_misfit_sigmas=1.3)
+    write_table(fits, folder / "diagnostics.parquet", DIAGNOSTICS)
+    section = adjustment_section(Calibration.from_results(folder, made_up.adjusted_platform()))
+    gained = next(one for one in section.tables if one.title == "Known target")
+    assert [row[-1] for row in gained.rows] == ["0.50", "0.50", "0.25", "0.50", "0.50", "0.50"]
+    assert "1.3 sigmas off what is seen without it; with it the sigma of r_z down is 0.25 times" in section.text
+    write_table(fits.assign(target_misfit_sigmas=7.0), folder / "diagnostics.parquet", DIAGNOSTICS)
+    section = adjustment_section(Calibration.from_results(folder, made_up.adjusted_platform()))
+    assert "7.0 sigmas off what is seen without it, and was not used." in section.text
