@@ -45,7 +45,9 @@ def write_labelme(labels, folder):
             {"label": f"point {row.point}", "points": [[row.u_px + 0.5, row.line + 0.5]], "shape_type": "point"}
             for row in mine.itertuples()
         ]
-        content = {"shapes": shapes, "imagePath": f"raw_{number}.png", "imageWidth": 648, "imageHeight": 1}
+        n_lines = len((folder / f"frameIndex_{number}.txt").read_text().splitlines()) - 1  # below its heading
+        size = {"imageWidth": 648, "imageHeight": n_lines}
+        content = {"shapes": shapes, "imagePath": f"raw_{number}.png", **size}
         (folder / f"raw_{number}.json").write_text(json.dumps(content))
 
 

@@ -211,7 +211,9 @@ def test_snakemakes_own_report_has_every_figure_with_title_and_caption(finished,
     run = finished.run("--report", str(tmp_path / "report.html"))
     assert run.returncode == 0, run.stderr
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    drawn = pd.read_parquet(finished.folder / "results" / "tiny" / "figures" / "index.parquet").query("left_out == ''")
+    index = pd.read_parquet(finished.folder / "results" / "tiny" / "figures" / "index.parquet")
+    assert not [text for text in index["left_out"] if "could not be drawn" in text]
+    drawn = index.query("left_out == ''")
     assert len(drawn) > 10
     for title in drawn["title"]:
         assert f'"labels": {{"figure": "{title}"' in page

@@ -27,7 +27,7 @@ from linepose.pipeline.stages import DIAGNOSTICS, OPTIMA, POSE, SAMPLES
 from linepose.pipeline.table_checks import accepted_rows, stage_rows, usable_chain
 from linepose.survey.hand_measured import HandMeasured
 from linepose.survey.observations import OBSERVATIONS, POSITION_COLUMNS, Survey, survey_from_table
-from linepose.tables import floats, with_parameters, write_table
+from linepose.tables import floats, point_column, with_parameters, write_table
 
 if TYPE_CHECKING:
     from linepose.config.platform import Platform
@@ -203,7 +203,7 @@ class Calibration:
         from_the_air = self.platform is not None and self.platform.flight is not None
         if from_the_air or not self.results.has("truth"):
             return None
-        truth = self.results.table("truth", pa.schema(floats("point", *_TRUE_POINT_COLUMNS)))
+        truth = self.results.table("truth", pa.schema([point_column(), *floats(*_TRUE_POINT_COLUMNS)]))
         return np.array(truth.groupby("point")[_TRUE_POINT_COLUMNS].first())
 
     @property
