@@ -12,6 +12,7 @@ from pathlib import Path
 from process_cost import measured
 
 from linepose.config.platform import load_platform, read_yaml
+from linepose.config.study import check_study
 
 ROOT = Path(__file__).resolve().parents[1]
 TO_REACH_S = 300
@@ -20,9 +21,9 @@ TO_REACH_S = 300
 def main() -> None:
     """Print the time."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    study = read_yaml(ROOT / "config" / "config.yaml")
-    folders = [str((ROOT / folder).resolve()) for folder in study["data_folders"]]
-    platforms = [name for name in study["platforms"] if not load_platform(ROOT / "config/platforms", name).simulation]
+    study = check_study(read_yaml(ROOT / "config" / "config.yaml"))
+    folders = [str((ROOT / folder).resolve()) for folder in study.data_folders]
+    platforms = [name for name in study.platforms if not load_platform(ROOT / "config/platforms", name).simulation]
     with tempfile.TemporaryDirectory() as folder:
         shutil.copytree(ROOT / "config", Path(folder) / "config")
         command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]

@@ -1,6 +1,6 @@
 """The tiny project and a coverage cell on SLURM and locally: the same bytes. `make slurm-test`.
 
-`python tests/slurm --faults` makes the faults alone.
+`PYTHONPATH=tests/workflow python tests/slurm --faults` makes the faults alone.
 """
 
 import os

@@ -60,7 +60,7 @@ rule strip_fit:
     conda:
         "../../environment.yml"
     resources:
-        **BATCHES,
+        **LONG,
     params:
         platform=mapped_settings,
         folder=recorded_folder,

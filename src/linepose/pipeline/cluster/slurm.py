@@ -21,9 +21,9 @@ _TOLD: Final = re.compile(r"\s*linepose(?:\.\w+)*: (.*\bfound .*)")
 _MEMORY: Final = re.compile(r"exceeded (?:job |step )?memory limit|oom[-_ ]kill", re.IGNORECASE)
 _REMEDIES: Final = {
     "CANCELLED": "start the same command again: it goes on where it was",
-    "OUT_OF_MEMORY": "give its rule more with --set-resources RULE:mem_mb=MB",
-    "TIMEOUT": "give its rule more with --set-resources RULE:runtime=MINUTES",
-    "NODE_FAIL": "leave the node out with --slurm-exclude-failed-nodes NODE",
+    "OUT_OF_MEMORY": "give its rule more with --set-resources RULE:mem_mb=MB (after `linepose run`: behind --)",
+    "TIMEOUT": "give its rule more with --set-resources RULE:runtime=MINUTES (after `linepose run`: behind --)",
+    "NODE_FAIL": "leave the node out with --slurm-exclude-failed-nodes NODE (after `linepose run`: behind --)",
     "PREEMPTED": "start the same command again when the cluster has room",
 }
 
