@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from linepose.arrays import Floats
 from linepose.inputs.scans.scan_files import Intensity, Scan
 from linepose.inputs.targets.board_in_scan import BoardInScan, fit_board
+from linepose.inputs.targets.dot_alone import dot_alone
 from linepose.inputs.targets.lattice import grow_lattice
-from linepose.inputs.targets.orientation import orientations
+from linepose.inputs.targets.orientation import Orientations, doubtful_orientations, orientations
 from linepose.inputs.targets.refine import Refine, refine_points
 from linepose.inputs.targets.ring_board import RingBoard, ring_board
 from linepose.inputs.targets.targets import find_targets, ring_score
@@ -77,6 +78,8 @@ def detect(scan: Scan, refine: Refine, section: RingsSection | None = None) -> D
             best = view
         if best.n_targets == board.n_points and len(best.boards) == 1:
             break
+    if best.n_targets >= _FEWEST_TARGETS and not best.boards:
+        best = _looked_for_again(scan.intensity, board, best)
     if best.n_targets < _FEWEST_TARGETS:
         found = f"no board: {best.n_targets} rings in a lattice where at least {_FEWEST_TARGETS} are needed"
         return _nothing(found, board_found=False)
@@ -86,11 +89,22 @@ def detect(scan: Scan, refine: Refine, section: RingsSection | None = None) -> D
     return _points(scan.intensity, best.boards[0], refine, board)
 
 
+def _looked_for_again(intensity: Intensity, board: RingBoard, best: _View) -> _View:
+    """The coarsest view of as many targets that leaves one way for a mark that was not seen at first."""
+    for block in _BLOCKS:
+        if len(intensity) // block < _FEWEST_LINES:
+            continue
+        view = _view(intensity, block, board, doubtful_orientations)
+        if len(view.boards) == 1 and view.n_targets == best.n_targets:
+            return view
+    return best
+
+
 def _nothing(doubt: str, board_found: bool) -> Detection:
     return Detection(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), doubt, board_found)
 
 
-def _view(intensity: Intensity, block: int, board: RingBoard) -> _View:
+def _view(intensity: Intensity, block: int, board: RingBoard, oriented: Orientations = orientations) -> _View:
     """What the scan shows with so many lines averaged into one."""
     n_lines = len(intensity) // block
     averaged = intensity[: n_lines * block].reshape(n_lines, block, -1).mean(axis=1)
@@ -99,7 +113,7 @@ def _view(intensity: Intensity, block: int, board: RingBoard) -> _View:
     if len(index) < _FEWEST_TARGETS:
         return _View(len(index), [])
     boards = []
-    for ids, _ in orientations(averaged, targets.centre[index], cell, board):
+    for ids, _ in oriented(averaged, targets.centre[index], cell, board):
         centre = targets.centre[index] * [1, block] + [0, (block - 1) / 2]
         boards.append(fit_board(board.points_m[ids], centre))
     return _View(len(index), boards)
@@ -113,6 +127,12 @@ def _points(intensity: Intensity, in_scan: BoardInScan, refine: Refine, board: R
     ringed = ring_score(intensity, expected, hole, board) >= _RING_SCORE
     candidates = np.flatnonzero(inside & ringed)
     found = refine_points(refine, intensity, expected[candidates])
-    offset_m = np.linalg.solve(jacobian[candidates], (found - expected[candidates])[..., None])[..., 0]
-    kept = np.linalg.norm(offset_m, axis=1) < _FARTHEST_DOT * board.hole_radius_m  # false where no dot was found
+
+    def in_middle() -> NDArray[np.bool_]:
+        offset_m = np.linalg.solve(jacobian[candidates], (found - expected[candidates])[..., None])[..., 0]
+        return np.asarray(np.linalg.norm(offset_m, axis=1) < _FARTHEST_DOT * board.hole_radius_m)  # false where no dot
+
+    for row in np.flatnonzero(~in_middle()):
+        found[row] = dot_alone(intensity, expected[candidates[row]], jacobian[candidates[row]], refine, board)
+    kept = in_middle()
     return Detection(candidates[kept], found[kept, 0], found[kept, 1])

@@ -1,10 +1,14 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import ndimage
 
 from linepose.inputs.scans.scan_files import Scan
 from linepose.inputs.targets.detect import detect
+from linepose.inputs.targets.dot_alone import dot_alone
 from linepose.inputs.targets.refine import METHODS
+from linepose.inputs.targets.ring_board import ring_board
 from linepose.survey.targets.rings import RingsSection
 
 TURN = np.deg2rad(20)
@@ -64,6 +68,56 @@ def test_mark_beyond_the_scan_is_doubtful(drawn):
     found = detected(drawn([[-500, 0], [0, 350]], [230, 150], (300, 400)))  # the mark lies at u = 422
     assert "corner mark" in found.doubt
     assert len(found.point) == 0
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_half_a_mark_at_the_scan_s_edge_is_enough(drawn, mirrored):
+    matrix = np.array([[0.0, 250.0], [420.0, 0.0]])
+    picture = drawn(matrix * ([[-1], [1]] if mirrored else 1), [150, 200])
+    first = 38  # the line of the mark's middle
+    cut_off = replace(picture, intensity=picture.intensity[first:], truth=picture.truth - [0, first])
+    found = detected(cut_off)
+    assert found.doubt == ""
+    np.testing.assert_array_equal(found.point, np.arange(15))
+    np.testing.assert_allclose(found.position, cut_off.truth, atol=0.3)
+
+
+@pytest.mark.parametrize("with_mark", [False, True])
+def test_a_mark_under_grass_is_not_taken_for_one_beyond_the_scan(drawn, with_mark):
+    picture = drawn(ROTATED, [200, 190], (400, 400), with_mark=with_mark)
+    corner = ROTATED @ [-0.385, 0.262] + [200, 190]  # below the scan's left edge once it is cut
+    cut = int(corner[0]) + 10
+    intensity = picture.intensity[:, cut:].copy()
+    if not with_mark:
+        u, line = (ROTATED @ [-0.385, -0.262] + [200 - cut, 190]).astype(int)
+        intensity[line - 12 : line + 13, u - 12 : u + 13] = 4000 * 0.3
+    found = detected(replace(picture, intensity=intensity))
+    assert ("corner mark is not seen" in found.doubt) != with_mark
+
+
+def ringed(dot, noise=8.0):
+    """A dot of so much light, hardly a pixel wide and drawn out over lines with its ring, at (30.3, 81.4)."""
+    jacobian = np.array([[90.0, 0.0], [300.0, 500.0]])  # the hole's radius is 0.0375 m: 3.4 pixels, 22 lines
+    line, u = np.indices((160, 60))
+    radius = np.linalg.norm((np.stack([u, line], axis=-1) - [30.3, 81.4]) @ np.linalg.inv(jacobian).T, axis=-1) / 0.0375
+    ring = 3000 * np.exp(-(((radius - 1.3) / 0.3) ** 4))
+    intensity = 200 + ring + dot * np.exp(-0.5 * (radius / 0.13) ** 2)
+    return (intensity + noise * np.random.default_rng(0).standard_normal(u.shape)).astype(np.float32), jacobian
+
+
+def test_a_dot_of_a_pixel_is_refined_without_the_ring_beside_it():
+    intensity, jacobian = ringed(350.0)
+    assert METHODS["centroid"](intensity, 30.0, 81.0) is None
+    board = ring_board(RingsSection())
+    found = dot_alone(intensity, np.array([30.0, 81.0]), jacobian, METHODS["centroid"], board)
+    # a dot of a sigma of half a pixel, sampled and not integrated, is off by up to a tenth of the hole
+    assert np.linalg.norm(np.linalg.inv(jacobian) @ (found - [30.3, 81.4])) < 0.1 * board.hole_radius_m
+
+
+def test_a_hole_without_a_dot_has_none():
+    intensity, jacobian = ringed(0.0)
+    found = dot_alone(intensity, np.array([30.0, 81.0]), jacobian, METHODS["centroid"], ring_board(RingsSection()))
+    assert np.isnan(found).all()
 
 
 def test_ground_alone_has_no_board(drawn):
