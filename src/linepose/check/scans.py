@@ -80,7 +80,7 @@ def _header_starts(scans: Iterable[Path]) -> dict[str, int]:
     starts = {}
     for path in scans:
         try:
-            start_us = header_time.start_us(header_time.words_of(path))
+            start_us = header_time.start_us(header_time.words_of(path), path)
         except InputError:  # told with the scan
             continue
         if start_us is not None:

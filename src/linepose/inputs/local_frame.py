@@ -1,10 +1,12 @@
 """From latitude, longitude and ellipsoidal height (WGS 84) to north, east, down in metres, and back.
 
 Two frames: the plane that touches the ellipsoid at an origin (lengths and angles are true, for surveys of a few
-kilometres), or a projected CRS such as UTM (the map's own coordinates; lengths differ by up to 0.04 %, and north is the
-grid's, so that headings are turned by the meridian convergence).
+kilometres), or a projected CRS such as UTM (the map's own coordinates; lengths of UTM differ by up to 0.1 %, and north
+is the grid's, so that headings are turned by the meridian convergence). Heights are never scaled, so that a
+system whose lengths are far from true is told, or refused.
 """
 
+import logging
 from dataclasses import dataclass
 from functools import cache
 from typing import Final
@@ -23,8 +25,11 @@ from linepose.tables import optional_floats, texts
 
 GEODETIC: Final = "EPSG:4979"  # WGS 84: latitude, longitude (deg), ellipsoidal height (m)
 
-_LARGEST_SCALE_ERROR: Final = 0.03  # of a system's lengths: polar stereographic ones reach 0.027
+_TOLD_SCALE_ERROR: Final = 1e-3  # of a system's lengths: that of UTM at the edge of a zone
+_LARGEST_SCALE_ERROR: Final = 1e-2  # as large as the best lever arms are known: 1 cm of 1 m
 _MARGIN_DEG: Final = 3.0  # around the area that a projected system is made for
+
+log = logging.getLogger(__name__)
 
 MAP_FRAME: Final = pa.schema([*texts("crs"), *optional_floats("latitude_deg", "longitude_deg", "height_m")])
 
@@ -67,12 +72,10 @@ def check_is_near(frame: LocalFrame, latitude_deg: float, longitude_deg: float, 
     So does one whose metres are none there, such as Web Mercator's.
     """
     known = _projected_crs(frame.crs)
-    area = None if known is None else known.area_of_use
-    if known is None or area is None:
+    if known is None:
         return
-    east_of_west = (longitude_deg - area.west + _MARGIN_DEG) % 360.0
-    width = area.east - area.west + (360.0 if area.east < area.west else 0.0) + 2 * _MARGIN_DEG
-    if east_of_west > width or not area.south - _MARGIN_DEG <= latitude_deg <= area.north + _MARGIN_DEG:
+    area = known.area_of_use
+    if area is not None and not _is_within(area.bounds, latitude_deg, longitude_deg):
         raise InputError(
             place,
             f"{frame.crs}, made for {area.name}, with positions at {latitude_deg:.2f}, {longitude_deg:.2f} deg",
@@ -82,16 +85,29 @@ def check_is_near(frame: LocalFrame, latitude_deg: float, longitude_deg: float, 
     _check_scale(frame, latitude_deg, longitude_deg, place)
 
 
+def _is_within(bounds: tuple[float, float, float, float], latitude_deg: float, longitude_deg: float) -> bool:
+    """Whether a place lies in an area of west, south, east and north (deg), or a margin around it."""
+    west, south, east, north = bounds
+    east_of_west = (longitude_deg - west + _MARGIN_DEG) % 360.0
+    width = east - west + (360.0 if east < west else 0.0) + 2 * _MARGIN_DEG
+    return east_of_west <= width and south - _MARGIN_DEG <= latitude_deg <= north + _MARGIN_DEG
+
+
 def _check_scale(frame: LocalFrame, latitude_deg: float, longitude_deg: float, place: str) -> None:
     factors = _projection(frame.crs).get_factors(longitude_deg, latitude_deg)
     worst = max(factors.meridional_scale, factors.parallel_scale, key=lambda scale: abs(scale - 1.0))
-    if abs(worst - 1.0) > _LARGEST_SCALE_ERROR:
+    better = utm_crs(latitude_deg, longitude_deg)
+    where = f"{latitude_deg:.2f}, {longitude_deg:.2f} deg"
+    if not abs(worst - 1.0) <= _LARGEST_SCALE_ERROR:
         raise InputError(
             place,
-            f"{frame.crs}, in which a metre is {worst:.2f} m long at {latitude_deg:.2f}, {longitude_deg:.2f} deg",
-            f"a system of true lengths there, such as {utm_crs(latitude_deg, longitude_deg)}",
+            f"{frame.crs}, in which a metre is {worst:.3f} m long at {where}",
+            f"a system of true lengths there, such as {better}",
             "correct or remove the key",
         )
+    if abs(worst - 1.0) > _TOLD_SCALE_ERROR:
+        told = "%s: in %s a metre is %.4f m long at %s, but heights are true; %s is closer"
+        log.warning(told, place, frame.crs, worst, where, better)
 
 
 def utm_crs(latitude_deg: float, longitude_deg: float) -> str:

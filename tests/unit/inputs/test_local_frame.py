@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,7 @@ from linepose.inputs.local_frame import (
 )
 from unit.inputs import geodesy
 
+WITHOUT_AREA = "+proj=webmerc +datum=WGS84 +units=m +type=crs"
 ORIGINS = [(-33.8892, 151.1937, 42.5), (51.15, -114.03, 1080.0), (0.0, 179.9999, -20.0), (69.6, 18.9, 10.0)]
 
 
@@ -94,8 +97,8 @@ def test_crs_in_feet_is_refused():
         ("EPSG:32756", -33.9, 146.0, False),
         ("EPSG:32633", -33.9, 151.2, False),
         ("EPSG:32660", 52.0, -179.0, True),  # across the date line
-        ("EPSG:3857", 10.0, 170.0, True),
-        ("EPSG:3413", 84.0, -45.0, True),
+        ("EPSG:3857", 1.0, 170.0, True),
+        ("EPSG:3413", 71.0, -45.0, True),
     ],
 )
 def test_crs_of_another_part_of_the_earth_is_told(crs, latitude, longitude, near):
@@ -106,8 +109,16 @@ def test_crs_of_another_part_of_the_earth_is_told(crs, latitude, longitude, near
             check_is_near(projected_frame(crs), latitude, longitude, "source.navigation.crs")
 
 
-@pytest.mark.parametrize(("crs", "scale"), [("EPSG:3857", "1.20"), ("EPSG:6933", "1.04")])
+@pytest.mark.parametrize(("crs", "scale"), [("EPSG:3857", "1.20"), ("EPSG:6933", "1.04"), (WITHOUT_AREA, "1.20")])
 def test_crs_whose_metres_are_none_is_told(crs, scale):
     """Scales 1 / cos(33.9 deg) = 1.205 of Web Mercator, and cos(30 deg) / cos(33.9 deg) = 1.043 of equal areas."""
-    with pytest.raises(InputError, match=rf"{crs}, in which a metre is {scale} m long at -33.90, .*such as EPSG:32756"):
+    told = rf"{re.escape(crs)}, in which a metre is {scale}\d m long at -33.90, .*such as EPSG:32756"
+    with pytest.raises(InputError, match=told):
         check_is_near(projected_frame(crs), -33.9, 151.2, "source.navigation.crs")
+
+
+@pytest.mark.parametrize(("longitude_deg", "told"), [(153.0, []), (156.0, []), (157.0, [1.0020574])])
+def test_crs_whose_lengths_are_a_thousandth_off_is_told(caplog, longitude_deg, told):
+    """On the equator UTM's scale is 0.9996 (1 + 1.00674 d^2 / 2 + 5 d^4 / 24) at d (rad) from its meridian."""
+    check_is_near(projected_frame("EPSG:32756"), -0.1, longitude_deg, "source.navigation.crs")
+    assert [record.args[2] for record in caplog.records] == [pytest.approx(scale, abs=1e-6) for scale in told]

@@ -1,4 +1,4 @@
-"""Time stamps in a file of one a row: whole microseconds, seconds with decimals, or dates and times (ISO 8601, UTC)."""
+"""Time stamps in a file of one a row: microseconds, seconds with decimals or in powers of ten, or ISO 8601 (UTC)."""
 
 import codecs
 import re
@@ -19,11 +19,12 @@ _POWERS: Final = "numbers such as 1.7e+09 (s) or 1.7e+15 (us)"
 _TEXT: Final = "a date and time such as 2026-05-01T12:00:00.25Z"
 _KINDS: Final = {
     _WHOLE: re.compile(r"[+-]?\d{1,19}"),
-    _SECONDS: re.compile(r"[+-]?\d{1,12}([.,]\d*)?"),
+    _SECONDS: re.compile(r"[+-]?\d{1,12}(\.\d*|,\d{0,9})?"),
     _POWERS: re.compile(r"[+-]?\d(\.\d*)?[eE][+]?\d{1,2}"),
     _TEXT: re.compile(r"\d{4}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d:\d\d([.,]\d*)?\S*"),
 }
 _MARKS: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+_SMALLEST_WHOLE_S: Final = 1000  # before a decimal comma; below, a row is a number and a time
 _SMALLEST_US: Final = 1e14  # of numbers in powers of ten, which are seconds below
 
 
@@ -40,6 +41,8 @@ def read_times(path: Path) -> tuple[NDArray[np.int64], int]:
     if not cells:
         return np.empty(0, dtype=np.int64), heading
     kind = next((name for name in _KINDS if _misfit(cells, name) is None), None)
+    if kind == _SECONDS and not _are_decimals(cells):
+        raise _fault(path, heading + 1, cells[0], f"one time alone: {', '.join(_KINDS)}")
     if kind is None:
         kind = next((name for name, pattern in _KINDS.items() if pattern.fullmatch(cells[0])), None)
         row = 0 if kind is None else _misfit(cells, kind) or 0
@@ -50,6 +53,14 @@ def read_times(path: Path) -> tuple[NDArray[np.int64], int]:
 def _misfit(cells: list[str], kind: str) -> int | None:
     """The first row that is not of this kind; None where all are."""
     return next((row for row, cell in enumerate(cells) if not _KINDS[kind].fullmatch(cell)), None)
+
+
+def _are_decimals(cells: list[str]) -> bool:
+    """Whether commas stand before decimals, and not between two columns: then times are large and do not go back."""
+    if not any("," in cell for cell in cells):
+        return True
+    seconds = np.array([cell.replace(",", ".") for cell in cells], dtype=float)
+    return bool(np.all(np.abs(seconds) >= _SMALLEST_WHOLE_S) and np.all(np.diff(seconds) >= 0))
 
 
 def _text(path: Path) -> str:

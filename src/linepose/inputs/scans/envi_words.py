@@ -10,7 +10,14 @@ _ORDERS: Final[dict[Interleave, str]] = {
     "bip": r"\bbip\b|(\bby |^)pixels?$",
     "bsq": r"\bbsq\b|\bsequential\b",
 }
-_BYTE_ORDERS: Final = (r"\b(little|intel|lsb|lsf|least)", r"\b(big|network|ieee|motorola|msb|msf|most)")
+_BYTE_ORDERS: Final = (
+    r"\b(little|intel|lsb|lsf|least)|\ble\b",
+    r"\b(big|network|motorola|msb|msf|most)|\bbe\b",
+)
+_DIGIT: Final = re.compile(r"[{\s]*\+?0*([01])(\.0*)?(?![\w.])")
+_CODE: Final = re.compile(r"(\d{1,3})(\.0*)?(\s*[-:=(,]\s*[^\d\s].*)?")
+_WIDTH: Final = re.compile(r"\s*-?\s*(byte|bit)", re.IGNORECASE)
+_BYTE: Final = 1  # the one code that is also the type's width
 _TYPES: Final = {
     "byte": 1,
     "uint8": 1,
@@ -32,14 +39,21 @@ def interleave_of(text: str) -> Interleave | None:
 
 
 def byte_order_of(text: str) -> int | None:
-    """0 of the least significant byte first, 1 of the most ("1", "Host (Intel)", "big endian"); None of other texts."""
-    if text.strip("{} ") in {"0", "1"}:
-        return int(text.strip("{} "))
+    """0 of the least significant byte first, 1 of the most ("1", "Host (Intel)", "ieee-be"); None of other texts.
+
+    A digit that a text begins with decides.
+    """
+    digit = _DIGIT.match(text)
+    if digit:
+        return int(digit[1])
     found = [order for order, words in enumerate(_BYTE_ORDERS) if re.search(words, text.lower())]
     return found[0] if len(found) == 1 else None
 
 
 def data_type_of(text: str) -> int | None:
-    """ENVI's code of a type ("12", "12 - unsigned integer", "uint16"); None of another text."""
-    match = re.fullmatch(r"(\d{1,3})(\.0*)?(\s*[-:=(,][^\d]*)?", text.strip())
-    return int(match[1]) if match else _TYPES.get(text.strip().lower())
+    """ENVI's code of a type ("12", "12 - unsigned integer", "uint16"); None of other texts and of a width in bytes."""
+    match = _CODE.fullmatch(text.strip())
+    if match is None:
+        return _TYPES.get(text.strip().lower())
+    code = int(match[1])
+    return None if code != _BYTE and _WIDTH.match(match[3] or "") else code

@@ -20,12 +20,12 @@ def rate_times(
     `starts` are by the scans' names, without folder and ending; one without an offset is UTC.
     """
     words = header_time.words_of(scan)
-    rate = rate_hz or header_time.line_rate_hz(words)
+    rate = rate_hz or header_time.line_rate_hz(words, scan)
     if rate is None:
         found, expected = "no rate of the lines", "source.line_rate_hz, or fps in the header"
         raise InputError(str(scan), found, expected, "set source.line_rate_hz")
     start = starts.get(scan.stem)
-    first_us = header_time.start_us(words) if start is None else _unix_us(start)
+    first_us = header_time.start_us(words, scan) if start is None else _unix_us(start)
     if first_us is None:
         found, expected = "no time of the first line", f"source.start_times.{scan.stem}, or a start in the header"
         raise InputError(str(scan), found, expected, f"add {scan.stem} to source.start_times")

@@ -28,13 +28,13 @@ log = logging.getLogger(__name__)
 def specim_times(scan: Path) -> tuple[NDArray[np.int64], Path]:
     """Unix times (us) of a scan's lines, and the file that they are of."""
     words = header_time.words_of(scan)
-    n_lines, rate = scan_size(scan)[0], header_time.line_rate_hz(words)
+    n_lines, rate = scan_size(scan)[0], header_time.line_rate_hz(words, scan)
     navigation = in_any_case(scan.with_suffix(".nav"))
     if navigation.is_file():
         frames, times = _synchronised(navigation, header_time.day_of(words))
         if len(frames):
             return _between(frames, times, n_lines, rate, navigation), navigation
-    start = header_time.start_us(words)
+    start = header_time.start_us(words, scan)
     if rate is None or start is None:
         found = f"no {navigation.name} with $SPTSMP beside it, and no Start Time and fps in the header"
         raise InputError(str(scan), found, "one of them", "put the file there, or correct source.time_stamps")

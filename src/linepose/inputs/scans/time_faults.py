@@ -15,7 +15,6 @@ Stamps = NDArray[np.int64]
 _REPEATED: Final = 0.1  # of the median step: so short a step is of a line that was stamped twice
 _TWICE: Final = (1.5, 2.5)  # of the median step: the step beside a repeated stamp, in which one is missing
 _JUMP: Final = 10.0  # of the median step: a step that is told
-_END: Final = {0: "first, long before the others,", -1: "last, long after the others,"}
 _FEWEST: Final = 4  # steps, from which a median says something
 
 log = logging.getLogger(__name__)
@@ -24,9 +23,8 @@ log = logging.getLogger(__name__)
 def checked_line_times(times: Stamps, n_lines: int, path: Path, heading: int) -> Stamps:
     """Time stamps (n_lines,) in us; raises InputError where they are not one a line, or do not increase.
 
-    One more than lines, of a line stamped twice or far from all others, is passed over; a stamp that stands twice
-    while the step beside it is twice as long is put between its neighbours; a jump is told. `heading` is the number of
-    rows above the first stamp.
+    One more than lines, of a line stamped twice, is passed over; a stamp that stands twice while the step beside it is
+    twice as long is put between its neighbours; a jump is told. `heading` is the number of rows above the first stamp.
     """
     if len(times) == n_lines + 1:
         times = _without_one_too_many(times, path)
@@ -46,14 +44,13 @@ def checked_line_times(times: Stamps, n_lines: int, path: Path, heading: int) ->
 
 
 def _without_one_too_many(times: Stamps, path: Path) -> Stamps:
-    """The times without the one that is hardly later than that before it, or far off at an end, where just one is."""
+    """The times without the one that is hardly later than that before it, where there is just one such.
+
+    Of one far off at an end nothing tells whether it, or another after a pause, is of no line.
+    """
     step = np.diff(times)
     if len(step) <= _FEWEST:
         return times
-    far = [end for end in (0, -1) if step[end] > _JUMP * np.median(step)]
-    if len(far) == 1 and np.all(step > _REPEATED * np.median(step)):
-        log.warning("%s: one time stamp more than lines; the %s is passed over", path, _END[far[0]])
-        return np.delete(times, far[0])
     short = np.flatnonzero(np.abs(step) < _REPEATED * np.median(step))
     if len(short) != 1:
         return times

@@ -39,6 +39,12 @@ def test_stamps_of_every_kind(tmp_path, heading, rows):
         (["2023-11-14T22:13:20Z", "2023-13-14T22:13:20Z"], r"row 2: found '2023-13.*, expected a date and time"),
         (["12:30", "12:31"], r"row 1: found '12:30', expected one time alone: a whole number of microseconds, seconds"),
         (["0,1700000000.25", "1,1700000000.26"], r"row 1: found '0,17.*', expected one time alone"),
+        (["0,1700000000", "1,1700000001"], r"row 1: found '0,17.*', expected one time alone"),
+        (["0,1700000000000000", "1,1700000000010000"], r"row 1: found '0,17.*', expected one time alone"),
+        (
+            [f"1700000000,{us}" for us in (5, 1005, 2005, 10005)],
+            r"row 1: found '1700000000,5', expected one time alone",
+        ),
         (["9" * 19, "1"], r"row 1: found '9999999999999999999', expected a whole number"),
     ],
 )

@@ -91,7 +91,8 @@ def test_events_that_were_logged_twice_or_without_a_valid_clock_are_told(tmp_pat
     assert "run-01.gps: 5 events at the time of another are passed over" in caplog.text
     fields = [f"{WEEK}", f"{OF_WEEK_S + 1:.6f}", "0.0", "0.0", "-18.0", "INVALID"]
     (tmp_path / "run-01.gps").write_bytes(log + novatel_writer.ascii_("MARKTIME", WEEK, OF_WEEK_S, fields))
-    times(scan, time_stamps="novatel")
+    with pytest.raises(InputError, match="6 time stamps"):  # nothing tells which is of no line
+        times(scan, time_stamps="novatel")
     assert "1 events while the receiver's clock was not valid" in caplog.text
 
 
@@ -127,6 +128,9 @@ def test_start_and_rate_of_keys(tmp_path, start):
         "fps = {100}\nacquisition date = DATE(dd-mm-yyyy): 01-05-2026\nStart Time = UTC TIME: 12:00:00.25\n",
         "fps = 100\nacquisition date = DATE(yyyy-mm-dd): 2026-05-01\nStart Time = UTC TIME: 12:00:00\n"
         "GPS Start Time = UTC TIME: 12:00:00.25\n",
+        "fps = 100.0 Hz (internal)\nacquisition date = Date: 2026-05-01\nStart Time = 12:00:00.25\n",
+        "fps = 100 (nominal)\nacquisition date = DATE(yyyy-mm-dd) : 2026-05-01\nStart Time = 12:00:00.25\n"
+        "GPS Start Time = UTC TIME: 00:00:00\n",
     ],
 )
 def test_start_and_rate_of_the_header(tmp_path, more):
@@ -134,6 +138,21 @@ def test_start_and_rate_of_the_header(tmp_path, more):
     scan = scan_of(tmp_path, more=more)
     np.testing.assert_array_equal(times(scan, time_stamps="rate"), 1_777_636_800_250_000 + LINES)
     assert first_time_us(source, tmp_path) == 1_777_636_800_250_000
+
+
+def test_start_of_a_receiver_without_time_and_a_rate_of_other_words_are_told(tmp_path, caplog):
+    more = "fps = 1,000\nframerate = 100\nacquisition date = DATE(yyyy-mm-dd): 2026-05-01\n"
+    scan = scan_of(tmp_path, more=f"{more}Start Time = 12:00:00.25\nGPS Start Time = 00:00:00\n")
+    np.testing.assert_array_equal(times(scan, time_stamps="rate"), 1_777_636_800_250_000 + LINES)
+    assert f"{scan}: fps = 1,000 is no rate such as 100.0" in caplog.text
+    assert f"{scan}: GPS Start Time (00:00:00) is not that of Start Time (12:00:00.25), which is taken" in caplog.text
+
+
+def test_start_by_the_gps_is_of_the_next_day_past_midnight(tmp_path):
+    more = "fps = 100\nacquisition date = DATE(yyyy-mm-dd): 2026-05-01\nStart Time = 23:59:59\n"
+    scan = scan_of(tmp_path, more=f"{more}GPS Start Time = 00:00:00.25\n")
+    midnight_us = 1_777_680_000_000_000
+    np.testing.assert_array_equal(times(scan, time_stamps="rate"), midnight_us + 250_000 + LINES)
 
 
 def test_headwalls_frames_under_another_name(tmp_path):
