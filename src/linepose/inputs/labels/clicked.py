@@ -1,7 +1,7 @@
 """A point that somebody clicked in a picture of a scan, and the way from there to labels."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -17,7 +17,8 @@ from linepose.survey.point_names import WHAT, point_name, point_names
 _CENTRE: Final = 0.5  # of the first pixel, counted from the picture's corner
 _NUMBERED: Final = re.compile(r"(?:#|(?:point|pt|p|id)[\s_#.:-]*)?(\d{1,9})", re.IGNORECASE)
 IDS: Final = ("group_id", "id", "point", "point_id", "point id")  # places that are known to hold names
-_ENDINGS: Final = {".bil", ".bip", ".bsq", ".hdr", ".raw", ".img"}  # within the name of a picture of a scan
+_OF_HEADER: Final = ".hdr"
+_OF_DATA: Final = {".bil", ".bip", ".bsq", ".raw", ".img"}  # within the name of a scan or its picture
 
 
 @dataclass(frozen=True)
@@ -44,13 +45,13 @@ def labels_of(
 
     `point_id` is the place of the points' names, see `point_of`.
     """
-    observation_of = _observations(scans)
+    observation_of = _Scans(scans)
     lines_of = cache(lambda observation: _lines(scans[observation]))
     rows: dict[tuple[int, int | str], tuple[float, float]] = {}
     for one in clicked:
-        observation = observation_of.get(_name(one.picture))
+        observation = observation_of.picture(one.picture)
         if observation is None:
-            expected = f"the name of a scan: {', '.join(sorted(observation_of)[:3])}, ..."
+            expected = f"the name of a scan: {', '.join(observation_of.names()[:3])}, ..."
             raise InputError(one.where, f"picture {one.picture}", expected, "rename the picture, or remove its labels")
         if one.width not in (None, n_pixels):
             found, expected = f"a picture {one.width} pixels wide", f"{n_pixels}, as camera.n_pixels says"
@@ -82,15 +83,40 @@ def _lines(scan: Path) -> int | None:
         return None
 
 
-def _observations(scans: Mapping[int, Path]) -> dict[str, int]:
-    """Observation by the scan's name, which must tell the scans apart."""
-    found: dict[str, int] = {}
-    for number, path in scans.items():
-        before = found.setdefault(_name(path.name), number)
-        if before != number:
-            place, expected = str(path), f"another name than {scans[before]}"
-            raise InputError(place, f"the name {path.name} again", expected, "rename the scan, or label in our CSV")
-    return found
+class _Scans:
+    """Observations by the names of their scans, which must tell them apart; raises InputError where they do not."""
+
+    def __init__(self, scans: Mapping[int, Path]) -> None:
+        self._whole: dict[str, int] = {}
+        self._short: dict[str, list[int]] = {}
+        for number, path in scans.items():
+            before = self._whole.setdefault(path.stem, number)
+            if before != number:
+                place, expected = str(path), f"another name than {scans[before]}"
+                raise InputError(place, f"the name {path.name} again", expected, "rename the scan, or label in our CSV")
+            self._short.setdefault(_without(path.stem, _OF_DATA), []).append(number)
+
+    def names(self) -> list[str]:
+        """What pictures may be called, without their ending: a scan's short name where it is of no other."""
+        short = {whole: _without(whole, _OF_DATA) for whole in self._whole}
+        return sorted(name if len(self._short[name]) == 1 else whole for whole, name in short.items())
+
+    def picture(self, file: str) -> int | None:
+        """The observation of a picture; None where it has no scan's name, or that of several.
+
+        `run.png`, `run.hdr.png` and `run.bil.png` are of run.hdr and run.bil.hdr; whole names come before short ones.
+        """
+        stem = Path(file.replace("\\", "/")).stem
+        of_scan = _without(stem, {_OF_HEADER})
+        whole = (self._whole.get(name) for name in (stem, of_scan, _without(of_scan, _OF_DATA)))
+        short = (self._short.get(name, []) for name in (stem, of_scan))
+        alone = (numbers[0] for numbers in short if len(numbers) == 1)
+        return next((number for number in whole if number is not None), next(alone, None))
+
+
+def _without(name: str, endings: Set[str]) -> str:
+    """A name without the last of its endings, where that is one of these."""
+    return Path(name).stem if Path(name).suffix.lower() in endings else name
 
 
 def point_of(clicked: Clicked, place: str | None = None) -> int | str:
@@ -122,9 +148,3 @@ def point_of(clicked: Clicked, place: str | None = None) -> int | str:
 def _named(text: str) -> int | str | None:
     numbered = _NUMBERED.fullmatch(text.strip())
     return point_name(numbered[1] if numbered else text)
-
-
-def _name(file: str) -> str:
-    """Name of a scan or picture without folders and endings; `run` of run.hdr, run.bil.hdr, run.png, run.hdr.png."""
-    stem = Path(file.replace("\\", "/")).stem
-    return Path(stem).stem if Path(stem).suffix.lower() in _ENDINGS else stem

@@ -17,6 +17,7 @@ from linepose.inputs.labels.format import LabelFormat, entries, tell_passed_over
 _LABELS: Final = ("keypointlabels", "labels")
 _VALUES: Final = ("text", "number", "choices", "rating")  # of a control beside the keypoint
 _UPLOADED: Final = re.compile(r"[0-9a-f]{8}-(?=.)")  # what Label Studio writes before a picture's name
+_PICTURES: Final = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp"}  # that a browser or a scan has
 _PER_CENT: Final = 100.0
 
 
@@ -96,13 +97,19 @@ def _texts(value: Any) -> list[str]:
 
 
 def _picture(task: dict[str, Any]) -> str:
-    """Name of a task's picture, without what an upload has put before it."""
+    """Name of a task's picture: of the first address of a picture, else of a text that may be one; empty without."""
     data = task.get("data") if isinstance(task.get("data"), dict) else task
-    named = [task.get("file_upload"), *data.values()]  # type: ignore[union-attr]
-    texts = [text for text in named if isinstance(text, str) and "." in text]
-    address = texts[0].rsplit("?d=", 1)[-1] if texts else ""
-    address = address.partition("?")[0] if "://" in address else address  # without the keys of a store
-    name = Path(unquote(address).replace("\\", "/")).name
+    texts = [text for text in (task.get("file_upload"), *data.values()) if isinstance(text, str)]  # type: ignore[union-attr]
+    names = {text: _file_name(text) for text in sorted(texts, key=lambda text: "/" not in text)}
+    pictures = [name for name in names.values() if Path(name).suffix.lower() in _PICTURES]
+    others = [name for text, name in names.items() if "." in text]
+    return next(iter(pictures or others), "")
+
+
+def _file_name(address: str) -> str:
+    """Name of the file at an address, without the keys of a store and what an upload has put before it."""
+    address = address.rsplit("?d=", 1)[-1]  # of a file on the server itself
+    name = Path(unquote(address.partition("?")[0]).replace("\\", "/")).name
     return _UPLOADED.sub("", name, count=1) if _UPLOADED.match(name) else name
 
 

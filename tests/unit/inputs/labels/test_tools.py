@@ -199,3 +199,43 @@ def test_a_control_beside_a_region_needs_no_size_of_its_own(tmp_path):
     del content[0]["annotations"][0]["result"][2]["original_width"]
     content[0]["annotations"][0]["result"].pop(0)
     assert read(tmp_path, content, "mark")["point"].tolist() == ["gate"]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"comment": "Flight over the field.", "image": "/data/upload/1/0badcafe-run-01.png"},
+        {"comment": "see run-03.png", "image": "https://store/v1.2/run-01.png?key=a.b/c.png"},
+        {"recorded": "2026-05-01T12:00:00.25Z", "image": "/tasks/run-01.png?version=1.0"},
+        {"note": "v1.2", "photo": "run-01.JPG"},
+    ],
+)
+def test_a_text_with_a_full_stop_is_no_picture(tmp_path, data):
+    content = deepcopy(STUDIO[:1])
+    content[0] |= {"data": data, "file_upload": "0badcafe-tasks.json"}
+    assert read(tmp_path, content)["observation"].tolist() == [1]
+
+
+@pytest.mark.parametrize(
+    ("picture", "observation"),
+    [
+        ("run.raw.png", 1),
+        ("run.img.hdr.png", 2),
+        ("run.png", None),
+        ("run-03.png", 3),
+        ("run-03.hdr.png", 3),
+        ("run-03.bil.png", 3),
+        ("run-04.bil.png", 4),
+    ],
+)
+def test_scans_told_apart_by_the_ending_of_their_data(tmp_path, picture, observation):
+    """`run.raw` and `run.img` in one folder, each with a header of its own: the picture's whole name counts."""
+    scans = {1: Path("run.raw.hdr"), 2: Path("run.img.hdr"), 3: Path("run-03.bil.hdr"), 4: Path("run-04.hdr")}
+    content = deepcopy(COCO) | {"annotations": COCO["annotations"][:1]}
+    content["images"][0]["file_name"] = picture
+    (tmp_path / "labels.json").write_text(json.dumps(content))
+    if observation is None:
+        with pytest.raises(InputError, match=r"run.png, expected the name of a scan: run-03, run-04, run.img, "):
+            read_point_labels(tmp_path, "labels.json", scans, 640)
+    else:
+        assert read_point_labels(tmp_path, "labels.json", scans, 640)["observation"].tolist() == [observation]
