@@ -22,6 +22,7 @@ _SEED_PIXELS: Final = 33
 _MOST_CELLS: Final = 40_000_000
 _MOST_STEPS: Final = 60
 _TABLE: Final = 4096
+_Place = tuple[float, float, float]
 _NO_BEND: Final = np.empty(0)
 
 
@@ -98,8 +99,7 @@ def rectify(
         surface.axes * cell_m,
         (int(size[1]), int(size[0])),
         _filled(seeds),
-        float(x_table[0]),
-        float(x_table[1] - x_table[0]),
+        (float(x_table[0]), float(x_table[1] - x_table[0])),
         pixel_from_normalised(camera, x_table),
         _NO_BEND if camera.lens.is_straight else lens.across(x_table, camera.lens),
     )
@@ -126,52 +126,40 @@ def _filled(seeds: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 @numba.njit(cache=True)
-def _bend_at(x: float, first: float, step: float, bend: Floats) -> float:
-    """Where the line lies across a straight one at normalised x; 0 without a table."""
+def _bend_at(x: float, table: tuple[float, float], bend: Floats) -> float:
+    """Where the line lies across a straight one at normalised x, by a table from a first x in steps; 0 where empty."""
     if len(bend) == 0:
         return 0.0
-    place = min(max((x - first) / step, 0.0), len(bend) - 1.0)
+    place = min(max((x - table[0]) / table[1], 0.0), len(bend) - 1.0)
     whole = min(int(place), len(bend) - 2)
     return float(bend[whole] + (place - whole) * (bend[whole + 1] - bend[whole]))
 
 
 @numba.njit(cache=True)
 def _off_line(
-    line: float,
-    x: float,
-    y: float,
-    z: float,
-    centre: Floats,
-    matrix: Floats,
-    x_first: float,
-    x_step: float,
-    bend: Floats,
+    line: float, point: _Place, centre: Floats, matrix: Floats, table: tuple[float, float], bend: Floats
 ) -> tuple[float, float]:
     """Normalised y off the line, and x, of a world point in the camera of a fractional line; infinite y behind it."""
     first = min(max(int(np.floor(line)), 0), len(centre) - 2)
     share = line - first
     across, along, ahead = 0.0, 0.0, 0.0
-    offset = (x, y, z)
     for k in range(3):
-        d = offset[k] - centre[first, k] - share * (centre[first + 1, k] - centre[first, k])
+        d = point[k] - centre[first, k] - share * (centre[first + 1, k] - centre[first, k])
         across += d * (matrix[first, k, 0] + share * (matrix[first + 1, k, 0] - matrix[first, k, 0]))
         along += d * (matrix[first, k, 1] + share * (matrix[first + 1, k, 1] - matrix[first, k, 1]))
         ahead += d * (matrix[first, k, 2] + share * (matrix[first + 1, k, 2] - matrix[first, k, 2]))
     if ahead <= 0.0:
         return np.inf, 0.0
-    return along / ahead - _bend_at(across / ahead, x_first, x_step, bend), across / ahead
+    return along / ahead - _bend_at(across / ahead, table, bend), across / ahead
 
 
 @numba.njit(cache=True)
 def _line_of(
     start: float,
-    x: float,
-    y: float,
-    z: float,
+    point: _Place,
     centre: Floats,
     matrix: Floats,
-    x_first: float,
-    x_step: float,
+    table: tuple[float, float],
     bend: Floats,
     n_steps: int,
 ) -> tuple[float, float]:
@@ -179,9 +167,9 @@ def _line_of(
     last = len(centre) - 1.0
     line = min(max(start, 0.0), last - 1.0)
     before = line + 1.0
-    value_before = _off_line(before, x, y, z, centre, matrix, x_first, x_step, bend)[0]
+    value_before = _off_line(before, point, centre, matrix, table, bend)[0]
     for _ in range(n_steps):
-        value, across = _off_line(line, x, y, z, centre, matrix, x_first, x_step, bend)
+        value, across = _off_line(line, point, centre, matrix, table, bend)
         slope = (value - value_before) / (line - before) if line != before else 0.0
         if not np.isfinite(slope) or slope == 0.0:
             return np.nan, 0.0
@@ -222,8 +210,7 @@ def _mapped(
     step: Floats,
     size: tuple[int, int],
     seeds: NDArray[np.int64],
-    x_first: float,
-    x_step: float,
+    table: tuple[float, float],
     pixel: Floats,
     bend: Floats,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], Floats]:
@@ -239,15 +226,17 @@ def _mapped(
             if seed < 0:
                 before = np.nan
                 continue
-            x = corner[0] + column * step[0, 0] + row * step[1, 0]
-            y = corner[1] + column * step[0, 1] + row * step[1, 1]
-            z = corner[2] + column * step[0, 2] + row * step[1, 2]
+            point = (
+                corner[0] + column * step[0, 0] + row * step[1, 0],
+                corner[1] + column * step[0, 1] + row * step[1, 1],
+                corner[2] + column * step[0, 2] + row * step[1, 2],
+            )
             line, across = np.nan, 0.0
             if np.isfinite(before):
-                line, across = _line_of(before, x, y, z, centre, matrix, x_first, x_step, bend, few)
+                line, across = _line_of(before, point, centre, matrix, table, bend, few)
             if not np.isfinite(line):
-                line, across = _line_of(float(seed), x, y, z, centre, matrix, x_first, x_step, bend, _MOST_STEPS)
-            place = (across - x_first) / x_step
+                line, across = _line_of(float(seed), point, centre, matrix, table, bend, _MOST_STEPS)
+            place = (across - table[0]) / table[1]
             if not np.isfinite(line) or place < 0.0 or place >= len(pixel) - 1:
                 before = np.nan
                 continue
