@@ -4,6 +4,7 @@ import re
 import tomllib
 from pathlib import Path
 
+import pytest
 import yaml
 from typer.testing import CliRunner
 
@@ -21,6 +22,11 @@ def test_package_and_command_line_tell_the_version_of_pyproject():
 
 def test_citation_has_the_version_of_pyproject():
     assert yaml.safe_load((ROOT / "CITATION.cff").read_text())["version"] == VERSION
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/your-platform.md"])
+def test_wheel_has_the_version_of_pyproject_in_its_name(page):
+    assert re.findall(r"linepose-([^-]+)-py3", (ROOT / page).read_text()) == [VERSION]
 
 
 def test_no_other_file_of_the_library_states_a_version():

@@ -20,7 +20,6 @@ platforms: # files of config/platforms
 data_folders: # searched in this order for a folder named like the data set
   - data
 
-seed: 2017 # every random number follows from it
 """
 
 

@@ -14,7 +14,7 @@ from linepose.tables import floats, optional_floats, texts
 
 ALWAYS: Final = ("principal_point_px", "focal_length_m")
 NAMES: Final = (*ALWAYS, *COEFFICIENTS)
-TOLD: Final = 0.5  # of the prior's sigma, below which the survey has told an intrinsic
+IDENTIFIABLE_SHARE: Final = 0.5  # of the prior's sigma, below which the survey has told an intrinsic
 _COVARIANCE: Final = tuple(f"covariance_with_{name}" for name in NAMES)
 _BY: Final = tuple(
     f"{step}_by_one" for step in ("forward_m", "right_m", "down_m", "turn_x_rad", "turn_y_rad", "turn_z_rad")
@@ -57,8 +57,8 @@ class AdjustedIntrinsics:
 
     @property
     def is_told(self) -> np.ndarray:
-        """Whether the survey told each (I,): the sigma is less than `TOLD` of the prior's."""
-        return self.sigma < TOLD * self.prior_sigma
+        """Whether the survey told each (I,): the sigma is less than `IDENTIFIABLE_SHARE` of the prior's."""
+        return self.sigma < IDENTIFIABLE_SHARE * self.prior_sigma
 
     def camera(self, given: Camera) -> Camera:
         """The camera of a platform's file with these in place of the file's."""

@@ -99,9 +99,9 @@ class CalibrationSettings(Settings):
     @model_validator(mode="after")
     def _all_count(self) -> "CalibrationSettings":
         removes = noise_model(self.noise_model).removes_outliers
-        of_others = _OF_ADJUSTMENT if removes else _OF_LIKELIHOODS
+        foreign = _OF_ADJUSTMENT if removes else _OF_LIKELIHOODS
         defaults = type(self).model_fields
-        for name in of_others:
+        for name in foreign:
             if getattr(self, name) != defaults[name].default:
                 one_of = [one.name for one in NOISE_MODELS.values() if one.removes_outliers != removes]
                 raise InputError(

@@ -309,6 +309,8 @@ def truth(evidence: Evidence, sigmas: float) -> Check:
         "Truth",
         Level.CARE,
         f"{found} The sigmas are too small for the errors that were simulated.",
-        "See repeatability for a factor.",
+        "Multiply the sigmas by the factor of the check on repeatability before you rely on them."
+        if evidence.sigma_factor is not None
+        else "Set experiments.repeatability in the platform's file, which finds by how much.",
         f"{evidence.truth_parameter} is {sigmas:.1f} sigmas from the truth",
     )

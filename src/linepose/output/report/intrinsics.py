@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from linepose.output.report.sections import TableOnPage
-from linepose.pipeline.adjusted_intrinsics import TOLD, AdjustedIntrinsics
+from linepose.pipeline.adjusted_intrinsics import IDENTIFIABLE_SHARE, AdjustedIntrinsics
 
 _WORDS: Final = {"principal_point_px": "principal point (px)", "focal_length_m": "focal length (mm)"}
 _SCALE: Final = {"focal_length_m": 1e3}
@@ -31,8 +31,8 @@ def intrinsics_on_page(anchor: str, found: AdjustedIntrinsics) -> TableOnPage:
         pairs = [f"{value:.5g} ± {sigma:.2g}" for value, sigma in (values[:2], values[2:])]
         rows.append([_WORDS.get(name, name), *pairs, "survey" if found.is_told[i] else "prior"])
     sentence = (
-        f"One sigma each. The survey tells what it knows to less than {TOLD:g} of the prior's sigma (camera.sigmas); "
-        "what it does not tell stays where the platform's file has it, and moves with the pose."
+        f"One sigma each. The survey tells what it knows to less than {IDENTIFIABLE_SHARE:g} of the prior's sigma "
+        "(camera.sigmas); what it does not tell stays where the platform's file has it, and moves with the pose."
     )
     heads = ["Intrinsic", "Found", "Known before", "Told by"]
     return TableOnPage(anchor, "The camera", sentence, heads, rows, folded=False)
