@@ -1,12 +1,14 @@
 """Whether camera and navigation tell the same time: overlap, gaps, and the offset that would explain a miss."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linepose.check.finding import Finding, error, ok, warning
+from linepose.inputs.gps_time import LOST_WEEKS
 
 Times = NDArray[np.int64]
 
@@ -16,7 +18,7 @@ _EPOCHS_S: Final = (315_964_800, 315_964_782)  # from 1970 to 1980, without and 
 _NAMED_OFFSETS_S: Final = (
     (18, "GPS time against UTC (18 leap seconds since 2017)"),
     (17, "GPS time against UTC (17 leap seconds, 2015 to 2016)"),
-    (_LOST_WEEKS_S, "1024 GPS weeks, which a receiver lost"),
+    (_LOST_WEEKS_S, LOST_WEEKS),
     (37, "TAI against UTC"),
     (19, "TAI against GPS time"),
     (_EPOCHS_S[0], "the GPS epoch of 1980 against that of 1970"),
@@ -64,7 +66,7 @@ def overlap_findings(
                 names.setdefault(by_key or _remedy(sign * seconds, offset_s), name)
     if names:
         told = [f"{remedy} ({name})" for remedy, name in names.items()]
-        return [error(_SUBJECT, found, "; or ".join(told[:3]))]
+        return [replace(error(_SUBJECT, found, "; or ".join(told[:3])), causes=tuple(names.values()))]
     key = "" if offset_s is None else " (source.time_offset_s)"
     advice = f"move the camera's clock{key} by {earliest:.1f} to {latest:.1f} s, or bring the log of that day"
     return [error(_SUBJECT, found, advice if earliest <= latest else "bring the log that covers the whole survey")]

@@ -1,6 +1,6 @@
 """What was read of a platform's files, in the units in which devices show it: for a person to compare."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from linepose.check.finding import Finding, ok
 from linepose.errors import InputError
-from linepose.inputs.local_frame import geodetic_from_local
+from linepose.inputs.axes import turned_angles
+from linepose.inputs.local_frame import geodetic_from_local, local_from_geodetic
 from linepose.inputs.navigation import NavigationRecord
 from linepose.inputs.scans.scan_bands import open_bands
 from linepose.survey.point_names import in_words
@@ -18,18 +19,24 @@ from linepose.survey.point_names import in_words
 _LINES: Final = 64  # of a scan, whose intensities are looked at
 
 
-def of_log(record: NavigationRecord) -> Finding:
-    """How many poses a log has, from when to when, and its first: latitude and longitude where they are known."""
-    log = record.log
+def of_log(record: NavigationRecord, corrections: Sequence[str] = ()) -> Finding:
+    """How many poses a log has, from when to when, and its first: latitude and longitude where they are known.
+
+    Angles that were turned into a frame are told about true north at the place, as devices show them. `corrections` are
+    navigation.corrections, which the record has had.
+    """
+    log, euler_rad = record.log, record.log.euler_rad[:1]
     told = f"{len(log.time_us)} poses from {utc(log.time_us[0])} to {utc(log.time_us[-1])}; the first: "
     if record.frame is None:
         told += "north {:.3f}, east {:.3f}, down {:.3f} m".format(*log.position_m[0])
     else:
         place = geodetic_from_local(record.frame, log.position_m[:1])[0]
         told += "latitude {:.7f}, longitude {:.7f} deg, height {:.3f} m".format(*place)
-    return ok(
-        "navigation log", told + ", roll {:.3f}, pitch {:.3f}, yaw {:.3f} deg".format(*np.degrees(log.euler_rad[0]))
-    )
+        if record.is_turned:
+            _, turn = local_from_geodetic(record.frame, place[np.newaxis])
+            euler_rad = turned_angles(np.swapaxes(turn, -1, -2), euler_rad)
+    told += ", roll {:.3f}, pitch {:.3f}, yaw {:.3f} deg".format(*np.degrees(euler_rad[0]).round(3) + 0.0)
+    return ok("navigation log", f"{told}, corrected by navigation.corrections" if corrections else told)
 
 
 def of_scans(scans: Mapping[int, Path], times: Mapping[int, NDArray[np.int64]]) -> Finding:

@@ -18,12 +18,16 @@ class Level(IntEnum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was looked at; `advice` is an imperative, empty where there is nothing to do."""
+    """One thing that was looked at; `advice` is an imperative, empty where there is nothing to do.
+
+    `causes` are what would explain an error of the clocks, by name; empty where nothing known does.
+    """
 
     level: Level
     subject: str
     found: str
     advice: str = ""
+    causes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -224,7 +224,7 @@ def _navigation_findings(
     navigation = settings.navigation
     if record is not None:
         log = record.log
-        findings.append(contents.of_log(record))
+        findings.append(contents.of_log(record, navigation.corrections))
         findings += position_findings(log.position_m, record.frame is None)
         findings += clock.rate_findings(log.time_us, navigation.maximum_pose_gap_s)
     if points is not None:
@@ -237,7 +237,7 @@ def _navigation_findings(
             within = clock.overlap_findings(time_us, reported.time_us, "covariances", offset_s)
             if log is not None and findings[-1].level == Level.OK:  # the clock is right: the file's is not
                 remedy = "correct the times in source.covariances (column 1, us)"
-                within = [replace(one, advice=remedy) if one.advice else one for one in within]
+                within = [replace(one, advice=remedy, causes=()) if one.advice else one for one in within]
             gaps = clock.gap_findings(time_us, reported.time_us, navigation.maximum_gap_s, *about)
             findings += within if within[0].level == Level.ERROR and gaps[0].level == Level.ERROR else gaps
     return findings, Recorded(points, log, reported)

@@ -3,11 +3,12 @@
 import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Final
 
-from linepose.check.finding import Finding, Level, warning
+from linepose.check.finding import Finding, warning
+from linepose.inputs.gps_time import LOST_WEEKS
 
-_WEEKS: Final = "1024 GPS weeks"
 _ROOM: Final = "linepose.inputs"
 _SUBJECTS: Final = {"scans": "scans", "navigation": "navigation log", "labels": "labels", "targets": "targets"}
 
@@ -40,10 +41,10 @@ def readers_warnings() -> Iterator[list[Finding]]:
 
 def agreeing(told: Sequence[Finding], findings: Sequence[Finding]) -> list[Finding]:
     """What was told, without a guess of lost GPS weeks where something else explains an error of the clocks."""
-    clocks = [one for one in findings if one.subject == "time" and one.level == Level.ERROR and "(" in one.advice]
-    if not clocks or any(_WEEKS in one.advice for one in clocks):
+    explained = {cause for one in findings for cause in one.causes}
+    if not explained or LOST_WEEKS in explained:
         return list(told)
-    return [one for one in told if f"may have lost {_WEEKS}" not in one.found]
+    return [one for one in told if LOST_WEEKS not in one.causes]
 
 
 def _findings(records: dict[str, logging.LogRecord]) -> list[Finding]:
@@ -54,5 +55,7 @@ def _findings(records: dict[str, logging.LogRecord]) -> list[Finding]:
     for (name, _), alike in kinds.items():
         more = f" (and {len(alike) - 1} more like it)" if len(alike) > 1 else ""
         room = name.removeprefix(f"{_ROOM}.").partition(".")[0]
-        findings.append(warning(_SUBJECTS.get(room, "files"), f"{alike[0]}{more}", ""))
+        cause = getattr(records[alike[0]], "cause", None)
+        found = warning(_SUBJECTS.get(room, "files"), f"{alike[0]}{more}", "")
+        findings.append(found if cause is None else replace(found, causes=(cause,)))
     return findings

@@ -21,6 +21,7 @@ TimeScale = Literal["gps", "unix"]
 
 GPS_EPOCH_US: Final = 315_964_800_000_000  # 1980-01-06 as Unix time
 WEEK_US: Final = 604_800_000_000
+LOST_WEEKS: Final = "1024 GPS weeks, which a receiver lost"  # as the `cause` of a warning
 _LOST_WEEKS: Final = 1024  # of a receiver whose week number has begun from 0 again
 _MOST_WEEKS: Final = 10_000
 _FARTHEST_US: Final = 3.2e17  # ten thousand years: weeks and epochs added to it stay within 64 bits
@@ -152,7 +153,8 @@ def tell_lost_weeks(unix_us: int, place: str) -> None:
     if lost:
         days = " or ".join(f"{n} GPS weeks ({_day(unix_us + n * WEEK_US)})" for n in lost)
         told = "%s: times of %s: the receiver may have lost %s; if it has, add them to all its times (1024 weeks: %d s)"
-        log.warning(told, place, _day(unix_us), days, _LOST_WEEKS * WEEK_US // 1_000_000)
+        seconds = _LOST_WEEKS * WEEK_US // 1_000_000
+        log.warning(told, place, _day(unix_us), days, seconds, extra={"cause": LOST_WEEKS})
 
 
 def _total_s(start_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:

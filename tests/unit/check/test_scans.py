@@ -233,6 +233,24 @@ def test_log_in_gps_seconds_read_as_unix_time_is_mended_by_the_key_alone(scans):
     assert check_platform("mine", scans).level < Level.ERROR
 
 
+def test_lost_weeks_are_told_where_only_the_covariances_have_another_clock(scans):
+    """An hour of the covariances' file explains nothing of the log and the scans, which agree."""
+    data = scans / "data" / "mine"
+    navigation = {"format": "table", "file": "navigation.parquet"}
+    settings(scans, source={"navigation": navigation, "covariances": "covariances.csv"})
+    log = pd.read_parquet(data / "navigation.parquet")
+    lost_us = int(log["time_us"].iloc[0]) - 1_126_785_600_000_000  # 2005-09-15
+    log.assign(time_us=log["time_us"] - lost_us).to_parquet(data / "navigation.parquet", index=False)
+    for path in (data / "scans").glob("*-times.csv"):
+        (pd.read_csv(path) - lost_us).to_csv(path, index=False)
+    reported = pd.read_csv(data / "covariances.csv", header=None)
+    reported[0] += 3_600_000_000 - lost_us
+    reported.to_csv(data / "covariances.csv", index=False, header=False)
+    report = check_platform("mine", scans)
+    assert [one.advice for one in report.of(Level.ERROR)] == ["correct the times in source.covariances (column 1, us)"]
+    assert any("may have lost 1024" in one.found for one in report.of(Level.WARNING))
+
+
 def test_labelled_views_have_their_column_named_for_a_shift():
     log_us = 1_700_000_000_000_000 + 100_000 * np.arange(100)
     (told,) = overlap_findings(log_us[20:30] - 3_600_000_000, log_us, "covariances")
