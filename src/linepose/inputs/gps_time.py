@@ -57,10 +57,13 @@ def leap_seconds() -> LeapSeconds:
     return LeapSeconds(start_us[since], np.cumsum(step_s[since]), expires)
 
 
-def microseconds(values: ArrayLike, unit: TimeUnit, place: str = "times") -> NDArray[np.int64]:
+def microseconds(
+    values: ArrayLike, unit: TimeUnit, place: str = "times", unit_key: str | None = None
+) -> NDArray[np.int64]:
     """Numbers in this unit as whole microseconds, rounded to the nearest.
 
-    Raises InputError naming the place and the record of what is no time between the years -10000 and 10000.
+    `unit_key` is the key that says the unit, None where the reader has none. Raises InputError naming the place and the
+    record of what is no time between the years -10000 and 10000.
     """
     numbers = np.asarray(values)
     if numbers.dtype.kind not in "iuf":
@@ -68,7 +71,9 @@ def microseconds(values: ArrayLike, unit: TimeUnit, place: str = "times") -> NDA
     beyond = ~(np.abs(numbers.astype(float)) * _UNIT_US[unit] <= _FARTHEST_US)
     for row in np.flatnonzero(beyond)[:1]:
         found, expected = f"the time {numbers.ravel()[row]:g} {unit}", "a time within ten thousand years of 1970"
-        remedy = _other_unit(float(numbers.ravel()[row])) or "mend or remove the record"
+        likely = _likely_unit(float(numbers.ravel()[row]))
+        mended = f"set the time's unit ({unit_key}: {likely})" if unit_key else f"write the times in {unit}"
+        remedy = f"it looks like {likely}: {mended}" if likely else "mend or remove the record"
         raise InputError(f"{place}, record {row + 1}", found, expected, remedy)
     if numbers.dtype.kind in "iu":  # whole numbers stay exact: nanoseconds since 1970 exceed what a double holds
         whole = numbers.astype(np.int64)
@@ -78,11 +83,10 @@ def microseconds(values: ArrayLike, unit: TimeUnit, place: str = "times") -> NDA
     return seconds.astype(np.int64) * 1_000_000 + np.rint(fraction * 1e6).astype(np.int64)
 
 
-def _other_unit(value: float) -> str | None:
-    """The remedy where a number is a time of our days in another unit."""
+def _likely_unit(value: float) -> TimeUnit | None:
+    """The unit in which a number is a time of our days; None where it is none in any."""
     low_us, high_us = _LIKELY_US
-    unit = next((unit for unit, unit_us in _UNIT_US.items() if low_us < value * unit_us < high_us), None)
-    return None if unit is None else f"it looks like {unit}: set the time's unit (time_unit: {unit})"
+    return next((unit for unit, unit_us in _UNIT_US.items() if low_us < value * unit_us < high_us), None)
 
 
 def unix_from_gps(gps_us: ArrayLike) -> NDArray[np.int64]:
@@ -123,10 +127,13 @@ def unix_from_week(week: ArrayLike, seconds: ArrayLike, place: str = "times") ->
     return unix_from_gps(whole + microseconds(np.asarray(seconds, dtype=float), "s", place))
 
 
-def unix_from_week_of_first(week: int | None, of_week_us: NDArray[np.int64], place: str) -> NDArray[np.int64]:
+def unix_from_week_of_first(
+    week: int | None, of_week_us: NDArray[np.int64], place: str, remedy: str = "restore the file, or remove the record"
+) -> NDArray[np.int64]:
     """Unix time (us) of times since the start of the week (K,), of which the first lies in `week`.
 
-    Times that begin from 0 again are of the next week. Raises InputError where the week is not known.
+    Times that begin from 0 again are of the next week. Raises InputError where the week is not known, and with this
+    `remedy` where a time lies in no week.
     """
     if week is None:
         raise InputError(
@@ -137,7 +144,7 @@ def unix_from_week_of_first(week: int | None, of_week_us: NDArray[np.int64], pla
         )
     for row in np.flatnonzero((of_week_us < 0) | (of_week_us > 2 * WEEK_US))[:1]:
         found, expected = f"{of_week_us[row] / 1e6:.3f} s of the GPS week", f"0 to {WEEK_US // 1_000_000}"
-        raise InputError(f"{place}, record {row + 1}", found, expected, "correct the time's unit or scale")
+        raise InputError(f"{place}, record {row + 1}", found, expected, remedy)
     rollovers = np.cumsum(np.diff(of_week_us, prepend=of_week_us[:1]) < -WEEK_US // 2)
     return unix_from_gps((week + rollovers) * WEEK_US + of_week_us)
 

@@ -1,9 +1,8 @@
 """Where a platform's observations come from: views whose points were labelled, or scans and a raw log."""
 
 import datetime
-import glob
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -148,8 +147,7 @@ class ScansSection(Settings):
     def files(self, folder: Path) -> set[Path]:
         """Every file that is read, of a data set in this folder."""
         scans = matching(folder, self.scans)
-        beside = {path for scan in scans for path in scan.parent.glob(f"{glob.escape(scan.stem)}[.-]*")}
-        beside |= {scan.with_suffix("") for scan in scans}  # run.bil of run.bil.hdr
+        beside = set(_beside(scans))
         named = {"resonon": r".*\.(times|lcf)", "headwall": r"frameindex_.*\.txt"}.get(self.time_stamps)
         if named:
             folders = {scan.parent for scan in scans}
@@ -161,6 +159,18 @@ class ScansSection(Settings):
         log = {folder / navigation} if isinstance(navigation, str) else navigation.files(folder)
         covariances = {folder / self.covariances} if self.covariances else set()
         return {*(path for path in beside if path.is_file()), *scans, *labels, *log, *covariances}
+
+
+def _beside(scans: Sequence[Path]) -> Iterator[Path]:
+    """What has a scan's name in any case, alone or before an ending: run.bil of run.bil.hdr, RUN.NAV of run.hdr."""
+    stems: dict[Path, set[str]] = {}
+    for scan in scans:
+        stems.setdefault(scan.parent, set()).add(scan.stem.lower())
+    for folder, names in stems.items():
+        for path in folder.iterdir():
+            name = path.name.lower()
+            if name in names or any(name[: sign.start()] in names for sign in re.finditer("[.-]", name)):
+                yield path
 
 
 def _is_day(start: object) -> bool:

@@ -102,3 +102,11 @@ def test_years_before_christ_have_a_name_in_messages(caplog):
 def test_weeks_that_a_receiver_of_ten_bits_lost_are_told(caplog):
     gps_time.tell_lost_weeks(gps_time.GPS_EPOCH_US, "log.gps")
     assert "lost 1024 GPS weeks (1999-08-22) or 2048 GPS weeks (2019-04-07)" in caplog.text
+
+
+def test_remedy_of_another_unit_is_of_the_reader():
+    """The key, where the reader has one."""
+    with pytest.raises(InputError, match=r"it looks like ns: set the time's unit \(time_unit: ns\)$"):
+        gps_time.microseconds([1.7e18], "s", "log.csv", "time_unit")
+    with pytest.raises(InputError, match=r"it looks like ns: write the times in s$"):
+        gps_time.microseconds([1.7e18], "s", "log.lcf")

@@ -99,13 +99,14 @@ def time_us_of(table: Columns, layout: TimedLayout, time: Name, week: str | None
     if scale in OF_TEXT:
         texts = (piece.text(time) for piece in table.pieces())
         return np.concatenate([unix_from_text(text, scale, layout.time_format, place) for text in texts])
-    times = gps_time.microseconds(table.number(time), layout.time_unit, place)
+    times = gps_time.microseconds(table.number(time), layout.time_unit, place, "time_unit")
     if scale in OF_DAY:
         return unix_from_day(times, layout.date, scale, str(table.path))
     if scale == "gps_week" and week:
         return gps_time.unix_from_week(table.number(week), times / 1e6, place)
     if scale == "gps_week":
-        return gps_time.unix_from_week_of_first(layout.gps_week, times, str(table.path))
+        remedy = "correct time_unit or time_scale of the log"
+        return gps_time.unix_from_week_of_first(layout.gps_week, times, str(table.path), remedy)
     if scale == "gps" and len(times) and 0 <= times.max() < gps_time.WEEK_US:
         found, expected = f"times up to {times.max() / 1e6:g} s", "seconds since 1980"
         raise InputError(place, found, expected, "set source.navigation.time_scale to gps_week")

@@ -27,14 +27,13 @@ def event_times(path: Path, name: str | None) -> NDArray[np.int64]:
 
     Raises InputError where there are none, or of several kinds.
     """
-    rows: dict[str, list[tuple[int, float]]] = {}
-    invalid = 0
+    rows: dict[str, list[tuple[int, float, bool]]] = {}
     for message in messages(path):
         kind = str(getattr(message, "name", ""))
         if _EVENT.fullmatch(kind):
-            rows.setdefault(kind, []).append(_time_of(message))
             status = getattr(message, "status", None)
-            invalid += str(getattr(status, "name", status)) == "INVALID"
+            is_valid = str(getattr(status, "name", status)) != "INVALID"
+            rows.setdefault(kind, []).append((*_time_of(message), is_valid))
     if name is None and len(rows) > 1:
         counts = ", ".join(f"{len(alike)} {kind}" for kind, alike in rows.items())
         raise InputError(str(path), counts, "one kind of event", f"set source.event to one of {', '.join(rows)}")
@@ -44,10 +43,12 @@ def event_times(path: Path, name: str | None) -> NDArray[np.int64]:
         held = f"events {', '.join(rows)}" if rows else "no event"
         expected = name or "MARKTIME, MARKnTIME or MARKnPVA messages"
         raise InputError(str(path), held, expected, "log them, or correct source.event and source.time_file")
-    week, seconds = np.array(chosen).T
-    times = np.unique(gps_time.unix_from_week(week, seconds))
+    week, seconds, valid = np.array(chosen).T
+    stamps = gps_time.unix_from_week(week, seconds, str(path))
+    times = np.unique(stamps)
     if len(times) < len(chosen):
         log.warning("%s: %d events at the time of another are passed over", path, len(chosen) - len(times))
+    invalid = len(times) - len(np.unique(stamps[valid == 1]))  # at a time at which no other was valid
     if invalid:
         log.warning("%s: %d events while the receiver's clock was not valid; their times may be wrong", path, invalid)
     return times

@@ -55,8 +55,34 @@ def test_hyspex_times_are_the_last_column(tmp_path, more, keys, above):
     np.testing.assert_array_equal(found, START_US + LINES)
 
 
-def event(name, second):
-    fields = [f"{WEEK}", f"{second:.6f}", "0.0", "0.0", "-18.0", "VALID"]
+@pytest.mark.parametrize("decimal", [".", ","])
+@pytest.mark.parametrize(
+    ("between", "end"),
+    [("\t", ""), (" ", ""), ("   ", "  "), (";", ""), ("; ", ";"), ("\t", "\t"), (",", ","), (", ", "")],
+)
+def test_hyspex_rows_have_one_sign_between_their_cells(tmp_path, between, end, decimal):
+    scan, path = scan_of(tmp_path), tmp_path / "run-01.txt"
+    nav_text(path)
+    rows = path.read_text().replace(".", decimal).replace(" ", between).splitlines()
+    path.write_text("".join(f"{row}{end}\n" for row in rows))
+    if decimal == between.strip():
+        with pytest.raises(InputError, match=r"run-01.txt, row 1: found .*, expected 8 numbers"):
+            times(scan, time_stamps="hyspex", gps_week=WEEK)
+    else:
+        np.testing.assert_array_equal(times(scan, time_stamps="hyspex", gps_week=WEEK), START_US + LINES)
+
+
+def test_hyspex_whole_seconds_beside_decimal_commas(tmp_path):
+    """Taken apart at commas, the eighth cell would be the whole part of the roll."""
+    scan = scan_of(tmp_path)
+    rows = [f"{row}\t10,51\t59,91\t899,84\t0,1\t0,2\t30,0\t{OF_WEEK_S + row:.0f}\n" for row in range(5)]
+    (tmp_path / "run-01.txt").write_text("".join(rows))
+    found = times(scan, time_stamps="hyspex", gps_week=WEEK)
+    np.testing.assert_array_equal(found, START_US + LINES * 100)
+
+
+def event(name, second, status="VALID"):
+    fields = [f"{WEEK}", f"{second:.6f}", "0.0", "0.0", "-18.0", status]
     if name.endswith("PVA"):
         place = ["60.25", "10.5", "250.5", "0.1", "0.2", "0.3", "0.1", "0.2", "30.0"]
         fields = [f"{WEEK}", f"{second:.6f}", *place, "INS_SOLUTION_GOOD"]
@@ -89,11 +115,23 @@ def test_events_that_were_logged_twice_or_without_a_valid_clock_are_told(tmp_pat
     (tmp_path / "run-01.gps").write_bytes(log + log)
     np.testing.assert_array_equal(times(scan, time_stamps="novatel", event="marktimea"), START_US + LINES)
     assert "run-01.gps: 5 events at the time of another are passed over" in caplog.text
-    fields = [f"{WEEK}", f"{OF_WEEK_S + 1:.6f}", "0.0", "0.0", "-18.0", "INVALID"]
-    (tmp_path / "run-01.gps").write_bytes(log + novatel_writer.ascii_("MARKTIME", WEEK, OF_WEEK_S, fields))
+    later = event("MARKTIME", OF_WEEK_S + 1, "INVALID")
+    (tmp_path / "run-01.gps").write_bytes(log + later + later)
     with pytest.raises(InputError, match="6 time stamps"):  # nothing tells which is of no line
         times(scan, time_stamps="novatel")
     assert "1 events while the receiver's clock was not valid" in caplog.text
+
+
+def test_events_without_a_valid_clock_that_are_not_used_are_not_told(tmp_path, caplog):
+    """Those of another kind, and those that were logged again when the clock was valid."""
+    scan = scan_of(tmp_path)
+    events(tmp_path / "run-01.gps", [OF_WEEK_S], "MARKTIME")
+    log = (tmp_path / "run-01.gps").read_bytes()
+    unused = event("MARK2TIME", OF_WEEK_S, "INVALID") + event("MARKTIME", OF_WEEK_S, "INVALID")
+    (tmp_path / "run-01.gps").write_bytes(unused + log)
+    np.testing.assert_array_equal(times(scan, time_stamps="novatel", event="MARKTIME"), START_US + LINES)
+    assert "1 events at the time of another" in caplog.text
+    assert "not valid" not in caplog.text
 
 
 def test_one_log_of_events_holds_a_burst_a_scan(tmp_path):
@@ -181,6 +219,21 @@ def test_headwalls_frames_under_another_name(tmp_path):
             r"run-01.txt, row 2: found '2 2 3 4 5 6 7 2_8', expected 8 numbers",
         ),
         (
+            lambda d: (d / "run-01.txt").write_text("1;2;3;4;5;6;7;280800\n1;2;3;4;5;6;7;;280801\n"),
+            {"time_stamps": "hyspex", "gps_week": WEEK},
+            r"run-01.txt, row 2: found '1;2;3;4;5;6;7;;280801', expected 8 numbers",
+        ),
+        (
+            lambda d: nav_text(d / "run-01.txt", -1.0),
+            {"time_stamps": "hyspex", "gps_week": WEEK},
+            r"record 1: found -1.000 s of the GPS week, .*; restore the file, or remove the record$",
+        ),
+        (
+            lambda d: nav_text(d / "run-01.txt", 1.7e18),
+            {"time_stamps": "hyspex", "gps_week": WEEK},
+            r"found the time 1.7e\+18 s, .*; it looks like ns: write the times in s$",
+        ),
+        (
             lambda d: (d / "run-01.txt").write_text("frame lon lat\n"),
             {"time_stamps": "hyspex", "gps_week": WEEK},
             r"run-01.txt: found no row of numbers, expected rows of a frame each",
@@ -219,3 +272,14 @@ def test_two_kinds_of_events_are_told(tmp_path):
         file.write(event("MARK1TIME", OF_WEEK_S))
     with pytest.raises(InputError, match=r"found 5 MARK2TIME, 1 MARK1TIME, .*; set source.event to one of"):
         times(scan, time_stamps="novatel")
+
+
+@pytest.mark.parametrize("name", ["SCAN.NAV", "SCAN.TXT", "SCAN.GPS", "Scan-Times.csv", "SCAN.BIL", "SCAN", "scan.nav"])
+def test_files_of_a_scan_in_another_case_are_watched(tmp_path, name):
+    """As they are read: a changed file makes the workflow run again."""
+    scan = scan_of(tmp_path, "scan")
+    (tmp_path / name).write_text("")
+    (tmp_path / "scanner.nav").write_text("")
+    source = ScansSection(kind="scans", dataset="x", scans="*.hdr")
+    watched = {path.name for path in source.files(tmp_path) if path.is_file()}
+    assert watched == {scan.name, "scan.raw", name}
