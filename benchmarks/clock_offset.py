@@ -19,8 +19,8 @@ from linepose.simulation.settings import SimulationSettings
 from linepose.simulation.survey import without_faults
 
 ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT / "tests" / "unit"))
-import clock_survey  # noqa: E402
+sys.path.insert(0, str(ROOT / "tests"))
+from unit import clock_survey  # noqa: E402
 
 PLANTED_S, MAXIMUM_S = 0.03, 0.3
 

@@ -18,12 +18,17 @@ ROOT = Path(__file__).resolve().parents[1]
 TO_REACH_S = 300
 
 
+def field_study() -> tuple[list[str], list[str]]:
+    """The platforms of the project's study that are not simulated, and its data folders."""
+    study = check_study(read_yaml(ROOT / "config" / "config.yaml"))
+    names = [name for name in study.platforms if not load_platform(ROOT / "config/platforms", name).simulation]
+    return names, [str((ROOT / folder).resolve()) for folder in study.data_folders]
+
+
 def main() -> None:
     """Print the time."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    study = check_study(read_yaml(ROOT / "config" / "config.yaml"))
-    folders = [str((ROOT / folder).resolve()) for folder in study.data_folders]
-    platforms = [name for name in study.platforms if not load_platform(ROOT / "config/platforms", name).simulation]
+    platforms, folders = field_study()
     with tempfile.TemporaryDirectory() as folder:
         shutil.copytree(ROOT / "config", Path(folder) / "config")
         command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), "--cores", str(cores)]
