@@ -1,23 +1,21 @@
 """NMEA 0183 sentences of a file with the time of each, as receivers and recorders write them; read by pynmea2.
 
 A sentence tells the time of the day. The day is that of RMC or ZDA sentences, which may change it, else one that is
-given.
+given, else that of RMC sentences of a receiver without a fix.
 """
 
 import datetime
 import logging
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from linepose.errors import InputError
+from linepose.inputs.nmea_content import content_of, time_of_day_us
+from linepose.inputs.nmea_dates import dated_runs, unix_us
 
 _DAY_US: Final = 86_400_000_000
-_DATED: Final = re.compile(rb"\$..(?:RMC,[^,]*,[^,]*(?:,[^,]*){6},\d{6}|ZDA,[^,]*,\d\d,\d\d,\d{4})")
-_OF_A_DAY: Final = re.compile(r"\$..(?:(RMC),[^,]*,(\w?)(?:,[^,]*){6},(\d{6})|(ZDA),[^,]*,(\d\d,\d\d,\d{4}))")
-_HEAD_BYTES: Final = 10_000_000
 _LINES_BEFORE: Final = 300  # the sentence that says the day of those
 _LATE_US: Final = 3_600_000_000  # by which a sentence of the day before may stand behind midnight
 
@@ -37,12 +35,6 @@ class Sentence:
     time_us: int | None
 
 
-def has_date(path: Path) -> bool:
-    """Whether sentences of a file say the day."""
-    with path.open("rb") as file:
-        return bool(_DATED.search(file.read(_HEAD_BYTES)))
-
-
 def sentences(path: Path, day: datetime.date | None, key: str) -> Iterator[Sentence]:
     """The sentences of a file; `day` is that of the first where none says it, and `key` the key that gives it.
 
@@ -50,7 +42,7 @@ def sentences(path: Path, day: datetime.date | None, key: str) -> Iterator[Sente
     Raises InputError where there is none, or the day is not known.
     """
     read = faults = 0
-    days = _Days(_dated(path), day)
+    days = _Days(_dated(path, day, key), day)
     if not days.known:
         found, expected = "no sentence with a date (RMC, ZDA)", "the day of the first sentence"
         raise InputError(str(path), found, expected, f"set {key}")
@@ -62,12 +54,12 @@ def sentences(path: Path, day: datetime.date | None, key: str) -> Iterator[Sente
                 faults += bool(line.strip())
                 continue
             try:
-                content = _content(text)
+                content = content_of(text)
             except ValueError:
                 faults += 1
                 continue
             read += 1
-            of_day_us = _time_of_day_us(content)
+            of_day_us = time_of_day_us(content)
             if of_day_us is not None:
                 time_us = days.time_us(number, of_day_us)
             yield Sentence(number, tuple(text.partition("*")[0].split(",")), content, time_us)
@@ -78,69 +70,23 @@ def sentences(path: Path, day: datetime.date | None, key: str) -> Iterator[Sente
         log.warning("%s: %d lines are no whole NMEA sentence and are passed over", path, faults)
 
 
-def _content(text: str) -> Any:
-    """What pynmea2 makes of a sentence, None for one that it does not know; raises ValueError for a wrong check sum."""
-    import pynmea2
+def _dated(path: Path, day: datetime.date | None, key: str) -> list[tuple[int, int]]:
+    """Lines and Unix times (us) of sentences that say their day, where it may change; told where `day` is another.
 
-    if re.match(r"PASHR,[A-Z]{3}", text):  # ATT, POS, ...: Ashtech's own sentences, of other words than RT300's
-        return None
-    try:
-        return pynmea2.parse(f"${text}")
-    except pynmea2.ChecksumError:
-        raise ValueError("check sum") from None
-    except (pynmea2.ParseError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError):
-        words = text.partition("*")[0].split(",")
-        if re.fullmatch(r"[A-Z]{5,8}", words[0]) and words[0][2:] not in {"GGA", "RMC", "ZDA", "GST", "HDT"}:
-            return None
-        raise ValueError("no sentence") from None
-
-
-def _said(content: Any, name: str) -> Any:
-    """What a sentence says under this name of pynmea2; None where its words are empty or of no such thing."""
-    try:
-        return getattr(content, name, None)
-    except (TypeError, ValueError, OverflowError):
-        return None
-
-
-def _time_of_day_us(content: Any) -> int | None:
-    time = _said(content, "timestamp")
-    if not isinstance(time, datetime.time):
-        return None
-    return ((time.hour * 60 + time.minute) * 60 + time.second) * 1_000_000 + time.microsecond
-
-
-def _unix_us(day: datetime.date, of_day_us: int = 0) -> int:
-    midnight = datetime.datetime.combine(day, datetime.time(), datetime.UTC)
-    return int(midnight.timestamp()) * 1_000_000 + of_day_us
-
-
-def _dated(path: Path) -> list[tuple[int, int]]:
-    """Lines and Unix times (us) of the first sentence that says its day, and of those that say another than before.
-
-    Those of a receiver without a fix (RMC, V) count where there are no others.
+    Those of a receiver without a fix count where neither others nor `day` say it.
     """
-    dated: dict[bool, list[tuple[int, int]]] = {True: [], False: []}
-    last: dict[str, str] = {}
-    with path.open(encoding="ascii", errors="replace") as file:
-        for number, line in enumerate(file, start=1):
-            match = _OF_A_DAY.search(line)
-            if match is None:
-                continue
-            kind, day = f"{match[1]}{match[2]}{match[4]}", match[3] or match[5]
-            if last.get(kind) == day:
-                continue
-            try:
-                content = _content(line.strip().partition("$")[2])
-            except ValueError:
-                continue
-            date, of_day_us = _said(content, "datestamp"), _time_of_day_us(content)
-            if isinstance(date, datetime.date) and of_day_us is not None:
-                found, last[kind] = dated[match[2] != "V"], day
-                time_us = _unix_us(date, of_day_us)
-                if not found or found[-1][1] // _DAY_US != time_us // _DAY_US:
-                    found.append((number, time_us))
-    return dated[True] or dated[False]
+    runs = dated_runs(path, day, key, has_fix=True)
+    if runs:
+        if day is not None and runs[0].first_day != day:
+            log.warning("%s: begins on %s, as RMC or ZDA say, not on %s (%s)", path, runs[0].first_day, day, key)
+        return [(run.line, run.time_us) for run in runs]
+    runs = dated_runs(path, day, key, has_fix=False)
+    if day is None:
+        return [(run.line, run.time_us) for run in runs]
+    if runs and runs[0].first_day != day:
+        told = "%s: RMC sentences of a receiver without a fix say %s; what counts is %s (%s)"
+        log.warning(told, path, runs[0].first_day, day, key)
+    return []
 
 
 class _Days:
@@ -151,7 +97,7 @@ class _Days:
 
     def __init__(self, dated: list[tuple[int, int]], first: datetime.date | None) -> None:
         self.dated, self.next = dated, 0
-        self.first_us = None if first is None else _unix_us(first)
+        self.first_us = None if first is None else unix_us(first)
         self.last_us: int | None = None
         self.known = bool(dated) or first is not None
 

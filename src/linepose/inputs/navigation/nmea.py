@@ -28,7 +28,8 @@ from linepose.inputs.navigation.record import (
     geodetic_record,
 )
 from linepose.inputs.navigation.usable_rows import placed, usable_rows
-from linepose.inputs.nmea import Sentence, has_date, sentences
+from linepose.inputs.nmea import Sentence, sentences
+from linepose.inputs.nmea_dates import has_date
 
 _HEAD_BYTES: Final = 4096
 _ANGLES: Final = ("roll", "pitch", "true_heading")
@@ -43,7 +44,9 @@ class NmeaSection(GeodeticSection):
 
     format: Literal["nmea"] = Field(description="`nmea`: NMEA 0183 sentences GGA and PASHR; Specim's .nav.")
     date: datetime.date | None = Field(
-        None, description="The day of the first sentence, where no RMC or ZDA says it; if not given, that of the scans."
+        None,
+        description="The day of the first sentence, where no RMC or ZDA of a receiver with a fix says it, or those of "
+        "one log disagree; if not given, that of the scans.",
     )
     maximum_fix_gap_s: PositiveFloat = Field(
         DEFAULT_GAP_S, description="Longest time between two GGA over which the position is interpolated (s)."
@@ -103,8 +106,11 @@ def _read_file(path: Path, section: NmeaSection) -> tuple[Poses, Covariances]:
     angles = np.hstack([_table(rows.attitudes), _table(rows.sigmas, 6)])
     attitude_us, attitudes = _used(rows.attitude_us, angles, f"{path}, PASHR")
     if len(fix_us) < 2:
-        found = f"{len(fix_us)} GGA with a fix{' and a height above the ellipsoid' if rows.without_height else ''}"
-        raise InputError(str(path), found, "two or more", "log GGA throughout the drive")
+        found, remedy = f"{len(fix_us)} GGA with a fix", "log GGA throughout the drive"
+        if rows.without_height:
+            found += " and a height above the ellipsoid"
+            remedy = "let the receiver write the height and the geoid's separation (words 9 and 11 of GGA)"
+        raise InputError(str(path), found, "two or more", remedy)
     if not len(attitude_us):
         found, expected = "no PASHR with roll, pitch and heading", "an attitude"
         raise InputError(str(path), found, expected, "log PASHR too, or read another log of the navigation system")

@@ -76,12 +76,13 @@ def test_position_is_linear_between_fixes(tmp_path):
 
 
 @pytest.mark.parametrize("place", [0, 2])
-def test_day_of_rmc_counts_before_the_key(tmp_path, place):
+def test_day_of_rmc_counts_before_the_key(tmp_path, caplog, place):
     """Also where midnight lies between the first sentence and the one that says the day."""
     parts = drive(86_399)
     parts.insert(place, rmc(86_399 if place == 0 else 86_401, "010524" if place == 0 else "020524"))
     record = read(tmp_path, "".join(parts), date=datetime.date(2020, 1, 1))
     np.testing.assert_array_equal(record.log.time_us, MIDNIGHT_US + 86_399_000_000 + 100_000 * np.arange(21))
+    assert "begins on 2024-05-01, as RMC or ZDA say, not on 2020-01-01 (source.navigation.date)" in caplog.text
 
 
 def zda(of_day_s, date="01,05,2024"):
@@ -110,6 +111,79 @@ def test_a_sentence_that_is_late_at_midnight_is_of_the_day_before(tmp_path):
     late = "".join(parts).replace(pashr(86_399.9), "") + pashr(86_399.9)
     record = read(tmp_path, late)
     np.testing.assert_array_equal(record.log.time_us, MIDNIGHT_US + 86_398_000_000 + 100_000 * np.arange(21))
+
+
+LOST = "150904"  # 1024 weeks before
+
+
+@pytest.mark.parametrize(
+    ("wrong", "count"),
+    [({0: rmc}, 1), ({1: rmc}, 1), ({3: rmc}, 1), ({1: lambda s, date: rmc(s, date) + zda(s, "15,09,2004")}, 2)],
+)
+def test_dates_that_do_not_follow_from_the_others_are_passed_over(tmp_path, caplog, wrong, count):
+    """At the begin, in the midst and at the end, of one sentence and of two."""
+    parts = [rmc(36_000 + second) + one for second, one in enumerate(drive())]
+    for place, sentences in wrong.items():
+        parts.insert(place, sentences(36_000 + place, LOST))
+    record = read(tmp_path, "".join(parts))
+    np.testing.assert_array_equal(record.log.time_us, MIDNIGHT_US + 36_000_000_000 + 100_000 * np.arange(21))
+    assert f"log.nmea: the dates of {count} sentences (RMC, ZDA) do not follow from those of the others" in caplog.text
+    assert "(2004-09-15); where they are right, set source.navigation.date to their day" in caplog.text
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_second_talker_that_has_lost_its_weeks_does_not_count(tmp_path, caplog, first):
+    """Of as many sentences the later day; the key says which where it is one of both."""
+    parts = []
+    for second, one in enumerate(drive()):
+        both = [rmc(36_000 + second), rmc(36_000 + second, LOST)]
+        parts += [*both[:: 1 if first else -1], one]
+    record = read(tmp_path, "".join(parts))
+    np.testing.assert_array_equal(record.log.time_us, MIDNIGHT_US + 36_000_000_000 + 100_000 * np.arange(21))
+    assert "the dates of 3 sentences (RMC, ZDA) do not follow" in caplog.text
+    assert read(tmp_path, "".join(parts), date=datetime.date(2004, 9, 15)).log.time_us[0] == (
+        MIDNIGHT_US + 36_000_000_000 - 1024 * 7 * 86_400_000_000
+    )
+
+
+def test_a_log_of_days_and_talkers_that_agree_says_nothing(tmp_path, caplog):
+    """Over midnight, with a sentence that comes late, and a second log of a week later at the same time of the day."""
+    parts = [
+        rmc(86_398 + n, "010524" if n < 2 else "020524") + zda(86_398 + n, f"{1 + n // 2:02d},05,2024") + one
+        for n, one in enumerate(drive(86_398))
+    ]
+    parts[2] = parts[2].replace(gga(86_400), rmc(86_399, "010524") + gga(86_400))
+    later = "".join([rmc(86_398, "080524"), *drive(86_398)])
+    record = read(tmp_path, "".join(parts) + later)
+    first_us = MIDNIGHT_US + 86_398_000_000 + 100_000 * np.arange(21)
+    np.testing.assert_array_equal(record.log.time_us, [*first_us, *(first_us + 7 * 86_400_000_000)])
+    assert "follow from" not in caplog.text
+
+
+def test_dates_without_a_fix_count_after_the_key(tmp_path, caplog):
+    """As of a receiver's clock that begins in 1980; told where the key says another day, and alone they count."""
+    text = sentence("GNRMC,100000.00,V,,,,,,,060180,,,N") + "".join(drive())
+    assert read(tmp_path, text, date=DAY).log.time_us[0] == MIDNIGHT_US + 36_000_000_000
+    told = "log.nmea: RMC sentences of a receiver without a fix say 1980-01-06; what counts is 2024-05-01"
+    assert told in caplog.text
+    text = sentence("GNRMC,100000.00,V,,,,,,,020524,,,N") + "".join(drive())
+    assert read(tmp_path, text).log.time_us[0] == MIDNIGHT_US + 86_400_000_000 + 36_000_000_000
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (rmc(36_000), True),
+        (zda(36_000), True),
+        (sentence("GNRMC,100000.00,V,,,,,,,060180,,,N"), False),
+        (sentence("GNRMC,,A,3353.352,S,15111.622,E,0.1,40.0,010524,,,A"), False),
+        (rmc(36_000).replace("*", "0*"), False),
+    ],
+)
+def test_what_says_the_day(tmp_path, text, says):
+    (tmp_path / "log.nmea").write_text(text)
+    section = NmeaSection(format="nmea", file="log.nmea")
+    assert section.lacking(tmp_path) == (None if says else "date")
 
 
 def test_day_of_the_scans_where_nothing_says_it(tmp_path):
@@ -187,7 +261,7 @@ def test_what_is_left_out_is_counted(tmp_path, caplog):
         (
             gga(1).split("*")[0].replace("22.500", ""),
             {"date": DAY},
-            r"found 0 GGA with a fix and a height above the ellipsoid, expected two",
+            r"0 GGA with a fix and a height above the ellipsoid, expected two or more; let the receiver.*the geoid's",
         ),
         (
             gga(1) + gga(2) + sentence("PASHR,ATT,432000.0,40.0,5.0,2.0,0.0,0.0,0"),
