@@ -66,9 +66,8 @@ class State:
         n = self.points_m.size
         points, camera = step[:n].reshape(-1, 3), step[n:]
         pose = camera[-N_POSE:]
-        found = {
-            name: getattr(self.lens, name) + float(one) for name, one in zip(self.sought, camera[2:], strict=False)
-        }
+        of_lens = camera[2:COMMON_SHIFT]
+        found = {name: getattr(self.lens, name) + float(one) for name, one in zip(self.sought, of_lens, strict=True)}
         shift_m = float(camera[COMMON_SHIFT])
         down = np.array([0.0, 0.0, 1.0])
         turn = rotations.matrix_from_rotation_vector(pose[3:])
