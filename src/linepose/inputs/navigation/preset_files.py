@@ -4,17 +4,16 @@ import logging
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
-from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from linepose.errors import InputError
 from linepose.inputs.navigation.presets import PRESETS
+from linepose.inputs.navigation.text_file import first_lines
 
 if TYPE_CHECKING:
     from linepose.inputs.navigation.table import TableSection
 
-_HEAD_LINES: Final = 200
 _ROWS_LOOKED_AT: Final = 20
 _SIGNS: Final = (";", "\t", ",", " ")
 
@@ -29,18 +28,26 @@ def as_written(path: Path, section: "TableSection") -> "TableSection":
     preset = PRESETS.get(section.preset or "")
     if preset is None or not path.is_file():
         return section
-    head = _head(path, section.encoding)
-    changes: dict[str, Any] = {}
-    delimiter = _delimiter(head[-_ROWS_LOOKED_AT:], section.delimiter, section.decimal)
+    lines = _lines(path, section)
+    rows = _rows(lines, section)[:_ROWS_LOOKED_AT]
+    delimiter = _delimiter(rows, section.delimiter, section.decimal)
     if section.delimiter == preset.keys.get("delimiter", ",") and not section.widths and delimiter != section.delimiter:
-        changes["delimiter"] = delimiter
-    if preset.name in _SAID:
-        changes |= _SAID[preset.name](path, head, section)
-    return section.model_copy(update=changes) if changes else section
+        section = section.model_copy(update={"delimiter": delimiter})
+    if preset.name not in _SAID:
+        return section
+    return section.model_copy(update=_SAID[preset.name](path, lines, rows, section))
 
 
-def without_absent_sigmas(section: "TableSection", names: Sequence[str]) -> "TableSection":
-    """The section without the preset's standard deviations, where the file has the columns of none of them."""
+def tell_heights(path: Path, section: "TableSection") -> None:
+    """Tell where a solution of RTKLIB says that its heights are above the geoid."""
+    if section.preset != "rtklib" or not path.is_file():
+        return
+    if any(line.startswith("%") and re.search(r"height=\S*/geodetic", line) for line in _lines(path, section)):
+        log.warning("%s: heights above the geoid; export them above the ellipsoid, or add the geoid's height", path)
+
+
+def without_absent_sigmas(path: Path, section: "TableSection", names: Sequence[str]) -> "TableSection":
+    """The section without the preset's standard deviations, where a file has the columns of none of them; told."""
     preset = PRESETS.get(section.preset or "")
     columns = section.columns
     if preset is None or columns.sigma_position is None or set(map(str, columns.of_sigmas())) & set(names):
@@ -49,17 +56,33 @@ def without_absent_sigmas(section: "TableSection", names: Sequence[str]) -> "Tab
     mine = columns.sigma_position, columns.sigma_attitude
     if mine != (keys.get("sigma_position"), keys.get("sigma_attitude")):
         return section
+    told = "%s: has no standard deviations, which preset %s has in %s; where other columns hold them, set "
+    told += "source.navigation.columns.sigma_position and sigma_attitude"
+    log.warning(told, path, preset.name, ", ".join(map(str, columns.of_sigmas())))
     less = columns.model_copy(update={"sigma_position": None, "sigma_attitude": None})
     return section.model_copy(update={"columns": less})
 
 
-def _head(path: Path, encoding: str) -> list[str]:
-    """The first lines that are not blank."""
+def _lines(path: Path, section: "TableSection") -> list[str]:
+    """The first lines; none of a file that is no text, which is told where it is read."""
     try:
-        with path.open(encoding="utf-8-sig" if encoding.lower() in {"utf-8", "utf8"} else encoding) as file:
-            return [line.rstrip("\r\n") for line in islice(file, _HEAD_LINES) if line.strip()]
+        return first_lines(path, section.encoding)
     except (UnicodeError, OSError):
-        return []  # told where the file is read
+        return []
+
+
+def _rows(lines: Sequence[str], section: "TableSection") -> list[str]:
+    """The rows of values among these lines: what is below the heading and its units, and no comment."""
+
+    def is_comment(line: str) -> bool:
+        return section.comment is not None and line.lstrip().startswith(section.comment)
+
+    below = [line for line in lines[section.skipped_lines :] if line.strip()]
+    if section.heading:
+        words = section.heading_words
+        is_heading = (all(word in line for word in words) and (words or not is_comment(line)) for line in below)
+        below = below[next((at + 1 for at, found in enumerate(is_heading) if found), 0) + section.unit_rows :]
+    return [line for line in below if not is_comment(line)]
 
 
 def _delimiter(rows: Sequence[str], usual: str, decimal: str) -> str:
@@ -71,34 +94,46 @@ def _delimiter(rows: Sequence[str], usual: str, decimal: str) -> str:
     return usual if sign.isspace() and usual.isspace() and "\t" not in usual else sign
 
 
-def _of_rtklib(path: Path, head: list[str], section: "TableSection") -> dict[str, Any]:
-    """The clock of the times, which the heading names, and weeks with seconds in the place of dates."""
-    comments = [line for line in head if line.startswith("%")]
-    if any(re.search(r"height=\S*/geodetic", line) for line in comments):
-        log.warning("%s: heights above the geoid; export them above the ellipsoid, or add the geoid's height", path)
-    if section.time_scale != "gps_iso":
+def _of_rtklib(path: Path, lines: Sequence[str], rows: Sequence[str], section: "TableSection") -> dict[str, Any]:
+    """The clock of the times, which the heading names; weeks with seconds in the place of dates; dates with times.
+
+    Between date and time stands a blank whatever the sign between cells, between week and seconds that sign.
+    """
+    columns, clock = section.columns, section.time_scale
+    if clock != "gps_iso":
         return {}
-    heading = next((line for line in comments if "latitude" in line), "").lstrip("% ")
+    heading = next((line for line in lines if line.startswith("%") and "latitude" in line), "").lstrip("% ")
     if heading.startswith("JST"):
         raise InputError(str(path), "times in JST", "GPST or UTC", "export the solution with times in UTC or GPST")
-    if heading.startswith("UTC"):
-        return {"time_scale": "iso"}
-    row = next((line for line in head if not line.startswith("%")), "")
-    if section.columns.time == ("1", "2") and re.match(r"\s*\d{4}\s+\d+\.\d+\s", row):
-        columns = section.columns.model_copy(update={"time": "2", "week": "1"})
+    said: dict[str, Any] = {"time_scale": "iso"} if heading.startswith("UTC") else {}
+    row = rows[0].strip() if rows else ""
+    if columns.time != PRESETS["rtklib"].keys["columns"]["time"]:
+        return said
+    if not said and re.match(r"\d{4}[\s,;]+\d+\.\d+[\s,;]", row):
+        columns = columns.model_copy(update={"time": "2", "week": "1"})
         return {"time_scale": "gps_week", "time_unit": "s", "columns": columns}
-    return {}
+    if not section.delimiter.isspace() and re.search(r"\d\s+\d", row.partition(section.delimiter)[0]):
+        changes: dict[str, Any] = {"time": "1"}
+        if columns.position == PRESETS["rtklib"].keys["columns"]["position"]:
+            changes["position"] = ("2", "3", "4")
+        return said | {"columns": columns.model_copy(update=changes)}
+    return said
 
 
-def _of_inertial_explorer(path: Path, head: list[str], section: "TableSection") -> dict[str, Any]:  # noqa: ARG001
+def _of_inertial_explorer(
+    path: Path,  # noqa: ARG001
+    lines: Sequence[str],
+    rows: Sequence[str],  # noqa: ARG001
+    section: "TableSection",
+) -> dict[str, Any]:
     """Seconds of the week alone, where the export has no column of the week."""
-    heading = next((line for line in head if all(word in line for word in section.heading_words)), "")
+    heading = next((line for line in lines if all(word in line for word in section.heading_words)), "")
     if not heading or section.columns.week != "Week" or re.search(r"\bWeek\b", heading):
         return {}
     return {"columns": section.columns.model_copy(update={"week": None})}
 
 
-_SAID: Final[dict[str, Callable[[Path, list[str], "TableSection"], dict[str, Any]]]] = {
+_SAID: Final[dict[str, Callable[[Path, Sequence[str], Sequence[str], "TableSection"], dict[str, Any]]]] = {
     "rtklib": _of_rtklib,
     "inertial_explorer": _of_inertial_explorer,
 }

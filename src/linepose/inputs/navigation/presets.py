@@ -4,6 +4,8 @@ import difflib
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,6 +15,11 @@ from linepose.settings import Settings
 _HEAD_CHARACTERS: Final = 20_000
 _EULER: Final = ("Roll", "Pitch", "Heading")
 _NUMBER: Final = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?"
+_OF_HYSPEX: Final = re.compile(rf"\s*\d{{1,7}}(?:[\s,;]+{_NUMBER}){{7}}\s*")
+_OF_KITTI: Final = re.compile(rf"\s*{_NUMBER}(?:\s+{_NUMBER}){{29}}\s*")
+_OF_TUM: Final = re.compile(rf"\s*(?:\d{{9,10}}(?:\.\d*)?|\d\.\d+[eE]\+0?9)(?:[\s,;]+{_NUMBER}){{7}}\s*")
+_WEEK_S: Final = 604_800
+_NOT_UNIT: Final = 0.01
 
 
 @dataclass(frozen=True)
@@ -34,10 +41,33 @@ def _words(*words: str) -> Callable[[str], bool]:
     return lambda head: any(all(word in line for word in words) for line in head.splitlines())
 
 
-def _first_row(pattern: str) -> Callable[[str], bool]:
-    """Whether the first line that is no comment is of this pattern."""
-    row = re.compile(pattern)
-    return lambda head: bool(row.fullmatch(next((one for one in head.splitlines() if one.strip()[:1] not in "#"), "")))
+def _rows(head: str, pattern: re.Pattern[str]) -> list[list[float]]:
+    """The numbers of the lines that are no comment, but for the last, which may be cut; none if the first is no row."""
+    lines = [line for line in head.splitlines() if line.strip()[:1] not in "#"]
+    whole = lines if len(head) < _HEAD_CHARACTERS else lines[:-1]
+    if not whole or not pattern.fullmatch(whole[0]):
+        return []
+    return [[float(cell) for cell in re.split(r"[\s,;]+", line.strip())] for line in whole if pattern.fullmatch(line)]
+
+
+def _is_kitti(head: str) -> bool:
+    """Whether a head is of 30 numbers a row."""
+    return bool(_rows(head, _OF_KITTI))
+
+
+def _is_hyspex(head: str) -> bool:
+    """Whether a head is of frames, more than one a second, whose eighth numbers are seconds of the GPS week."""
+    rows = _rows(head, _OF_HYSPEX)
+    frames, seconds = [row[0] for row in rows], [row[7] for row in rows]
+    if any(after < before for before, after in pairwise(seconds)) or any(not 0 <= one < _WEEK_S for one in seconds):
+        return False
+    return len(rows) > 1 and 0 < seconds[-1] - seconds[0] < frames[-1] - frames[0]
+
+
+def _is_tum(head: str) -> bool:
+    """Whether a head is of Unix times, places and quaternions, of which some may be zeros."""
+    lengths = [hypot(*row[4:]) for row in _rows(head, _OF_TUM)]
+    return any(lengths) and all(abs(one - 1) < _NOT_UNIT for one in lengths if one)
 
 
 _GEODETIC: Final = {"coordinates": "geodetic", "angle_unit": "degrees", "time_unit": "s"}
@@ -91,7 +121,7 @@ _ALL: Final = (
             "time_scale": "gps_week",
             "columns": {"time": "8", "position": ("3", "2", "4"), "attitude": ("5", "6", "7")},
         },
-        _first_row(rf"\s*\d{{1,7}}(?:[\s,;]+{_NUMBER}){{7}}\s*"),
+        _is_hyspex,
     ),
     Preset(
         "headwall",
@@ -135,7 +165,7 @@ _ALL: Final = (
             "attitude_axes": "enu",
             "columns": {"time": "time", "position": ("1", "2", "3"), "attitude": ("4", "5", "6")},
         },
-        _first_row(rf"\s*{_NUMBER}(?:\s+{_NUMBER}){{29}}\s*"),
+        _is_kitti,
     ),
     Preset(
         "tum",
@@ -149,7 +179,7 @@ _ALL: Final = (
             "attitude_axes": "enu",
             "columns": {"time": "1", "position": ("2", "3", "4"), "attitude": ("5", "6", "7", "8")},
         },
-        _first_row(rf"\s*(?:\d{{9,10}}(?:\.\d*)?|\d\.\d+[eE]\+0?9)(?:[\s,;]+{_NUMBER}){{7}}\s*"),
+        _is_tum,
     ),
     Preset(
         "rtklib",

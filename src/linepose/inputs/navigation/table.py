@@ -20,7 +20,7 @@ from linepose.inputs.navigation.attitude_log import AttitudeSection, with_attitu
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.named_columns import keys_by_names
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
-from linepose.inputs.navigation.preset_files import as_written, without_absent_sigmas
+from linepose.inputs.navigation.preset_files import as_written, tell_heights, without_absent_sigmas
 from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
 from linepose.inputs.navigation.table_axes import keys_against
 from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts_of
@@ -115,11 +115,15 @@ class TableSection(TimedLayout, GeodeticSection):
         attitudes = set() if self.attitude_log is None else set(self.attitude_log.files(folder))
         return super().files(folder) | attitudes | ({folder / self.times} if self.times else set())
 
-    def lacking(self, folder: Path) -> Literal["gps_week", "date"] | None:  # noqa: ARG002
-        """The week or the day, where a log's time counts from it and it is not given."""
-        mine = self.lacks(self.columns.week)
+    def lacking(self, folder: Path) -> Literal["gps_week", "date"] | None:
+        """The week or the day, where a log's time counts from it and it is neither given nor in the log."""
+        for path in self.paths(folder):
+            of_file = as_written(path, self)
+            mine = of_file.lacks(of_file.columns.week)
+            if mine is not None:
+                return mine
         other = self.attitude_log
-        return mine or (other.lacks(other.columns.week) if other is not None else None)
+        return other.lacks(other.columns.week) if other is not None else None
 
 
 def read(section: TableSection, folder: Path) -> NavigationRecord:
@@ -151,6 +155,8 @@ FORMAT: Final = NavigationFormat(
 def _tables(section: TableSection, folder: Path) -> Iterator[tuple[Columns, TableSection]]:
     """The columns of each file, and the section as it is for that file; with a file of times, those of all as one."""
     sections = [(path, as_written(path, section)) for path in section.paths(folder)]
+    for path, _ in sections:
+        tell_heights(path, section)
     tables = ((_columns(path, of_file), of_file) for path, of_file in sections)
     if section.times is None:
         yield from tables
@@ -169,7 +175,7 @@ def _tables(section: TableSection, folder: Path) -> Iterator[tuple[Columns, Tabl
     times = times[:-1] if not times[-1] else times
     if len(times) != len(cells):
         raise InputError(str(path), f"{len(times)} times", f"{len(cells)}, one a row of the log", "restore the files")
-    yield Columns(path, cells.assign(time=times), 0), section
+    yield Columns(path, cells.assign(time=times), 0, decimal=section.decimal), section
 
 
 def _columns(path: Path, section: TableSection) -> Columns:
@@ -205,7 +211,7 @@ def _joined(section: TableSection, of_attitudes: AttitudeSection, folder: Path) 
 
 def _fixes(table: Columns, section: TableSection) -> tuple[NDArray[np.int64], Floats, Floats]:
     """Times (F,), positions (F, 3) and standard deviations north, east, down (F, 3), NaN where there are none."""
-    table, columns = _whole_rows(table, without_absent_sigmas(section, table.names))
+    table, columns = _whole_rows(table, without_absent_sigmas(table.path, section, table.names))
     time_us = time_us_of(table, section, columns.time, columns.week)
     sigma = np.full((len(time_us), 3), np.nan)
     if columns.sigma_position is not None:
@@ -232,7 +238,7 @@ def _whole_rows(table: Columns, section: TableSection) -> tuple[Columns, Columns
 
 
 def _read_part(table: Columns, section: TableSection) -> tuple[Poses, Covariances]:
-    table, columns = _whole_rows(table, without_absent_sigmas(section, table.names))
+    table, columns = _whole_rows(table, without_absent_sigmas(table.path, section, table.names))
     table = with_orientation(table, columns.attitude)
     place = str(table.path)
     time_us = time_us_of(table, section, columns.time, columns.week)

@@ -32,11 +32,13 @@ def parts_of(name: Name) -> tuple[str, ...]:
 class Columns:
     """The cells of one file, whose first row of values stands on this line (counted from 0).
 
-    `names` are all columns of the file, where `cells` are not of all.
+    `names` are all columns of the file, where `cells` are not of all; `decimal` is the sign of the decimals in text.
     """
 
-    def __init__(self, path: Path, cells: pd.DataFrame, first_line: int, names: Sequence[str] = ()) -> None:
-        self.path, self.cells, self.first_line = path, cells, first_line
+    def __init__(
+        self, path: Path, cells: pd.DataFrame, first_line: int, names: Sequence[str] = (), decimal: str = "."
+    ) -> None:
+        self.path, self.cells, self.first_line, self.decimal = path, cells, first_line, decimal
         self.names = tuple(names) or tuple(map(str, cells.columns))
 
     def check(self, names: Sequence[Name], key: str = "source.navigation.columns") -> None:
@@ -55,12 +57,13 @@ class Columns:
 
     def rows(self, kept: np.ndarray) -> "Columns":
         """The rows (K,) of these; their numbers in the file are kept."""
-        return Columns(self.path, self.cells[kept], self.first_line, self.names)
+        return Columns(self.path, self.cells[kept], self.first_line, self.names, self.decimal)
 
     def pieces(self) -> Iterator["Columns"]:
         """The rows in parts, one after the other: text of all of them at once takes much memory."""
         for first in range(0, max(len(self.cells), 1), _ROWS_AT_ONCE):
-            yield Columns(self.path, self.cells.iloc[first : first + _ROWS_AT_ONCE], self.first_line, self.names)
+            cells = self.cells.iloc[first : first + _ROWS_AT_ONCE]
+            yield Columns(self.path, cells, self.first_line, self.names, self.decimal)
 
     def place(self, row: int, name: str) -> str:
         """Where the value in this row (counted from 0) stands in the file."""
@@ -77,7 +80,7 @@ class Columns:
 
     def number(self, name: Name, of_degrees: str = "") -> np.ndarray:
         """A column as numbers (K,); whole ones stay whole."""
-        column = self.cells[name] if isinstance(name, str) else self.text(name)
+        column = self.cells[name] if isinstance(name, str) else self._with_points(self.text(name))
         numbers = pd.to_numeric(column, errors="coerce")
         for row in np.flatnonzero(numbers.isna().to_numpy() & column.notna().to_numpy())[:1]:
             told, cell = " ".join(parts_of(name)), str(column.iloc[row])
@@ -86,13 +89,17 @@ class Columns:
             raise InputError(self.place(row, told), repr(cell), "a number", remedy)
         return np.asarray(numbers.to_numpy())
 
+    def _with_points(self, text: pd.Series) -> pd.Series:
+        """Text (K,) of numbers, with a point as the sign of their decimals."""
+        return text if self.decimal == "." else text.str.replace(self.decimal, ".", regex=False)
+
     def degrees(self, name: Name) -> Floats:
         """Angles (K,) in degrees, of text with degrees, minutes and seconds; S and W count as minus."""
         return np.concatenate([piece._degrees(name) for piece in self.pieces()])
 
     def _degrees(self, name: Name) -> Floats:
         text = self.text(name)
-        parts = text.str.extract(_ANGLE)
+        parts = self._with_points(text).str.extract(_ANGLE)
         for row in np.flatnonzero(parts["d"].isna().to_numpy())[:1]:
             told = " ".join(parts_of(name))
             expected = "degrees, minutes, seconds such as 22 18 04.3"

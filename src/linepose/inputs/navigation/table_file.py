@@ -18,12 +18,12 @@ def read_columns(
     """The columns `used` of a file that it has; those `as_text` stay text, and those `apart` may take three cells."""
     if path.suffix.lower() not in _PARQUET:
         table = read_text(path, layout, [part for name in used for part in parts_of(name)], as_text, apart)
-        return Columns(path, table.cells, table.first_line, table.names)
+        return Columns(path, table.cells, table.first_line, table.names, layout.decimal)
     table = read_parquet(path)
     twice = [name for name in table.column_names if table.column_names.count(name) > 1]
     if twice:
         raise InputError(str(path), f"column {twice[0]} twice", "each column once", "remove or rename one of them")
     try:
-        return Columns(path, table.to_pandas(timestamp_as_object=False), 0)
+        return Columns(path, table.to_pandas(timestamp_as_object=False), 0, decimal=layout.decimal)
     except (ValueError, TypeError) as error:
         raise InputError(str(path), " ".join(str(error).split()), "columns of numbers and text", "restore it") from None

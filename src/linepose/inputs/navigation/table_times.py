@@ -19,8 +19,10 @@ _DAY_US: Final = 86_400_000_000
 
 
 def unix_from_text(text: pd.Series, time_scale: str, time_format: str | None, place: str) -> Stamps:
-    """Unix time (us) of dates and times as text (K,): of ISO 8601, also with / in the date, or of a format."""
-    plain = text.str.strip() if time_format else text.str.strip().str.replace("/", "-")
+    """Unix time (us) of dates and times as text (K,): of a format, or of ISO 8601, also with / in the date."""
+    plain = text.str.strip()
+    if not time_format:  # pandas does not know the decimal comma of ISO 8601
+        plain = plain.str.replace("/", "-").str.replace(",", ".", regex=False)
     times = pd.to_datetime(plain, utc=True, format=time_format or "ISO8601", errors="coerce")
     for row in np.flatnonzero(times.isna().to_numpy())[:1]:
         expected = time_format or "a date and time such as 2026-05-01T12:00:00.25Z"

@@ -87,6 +87,12 @@ def read_text(
     return TextTable(cells, first_line, tuple(names))
 
 
+def first_lines(path: Path, encoding: str) -> list[str]:
+    """The first lines of a text file without their ends; raises UnicodeError for another encoding."""
+    with path.open(encoding="utf-8-sig" if encoding.lower() in {"utf-8", "utf8"} else encoding) as file:
+        return [line.rstrip("\r\n") for line in islice(file, _LINES_ABOVE)]
+
+
 def _fault(path: Path, error: Exception) -> InputError:
     if isinstance(error, UnicodeError):
         return InputError(str(path), "bytes of another encoding", "text", "set source.navigation.encoding (latin-1)")
@@ -125,7 +131,7 @@ def _cells(
 
 def _head(path: Path, layout: TextLayout, apart: Sequence[str]) -> tuple[list[str], int]:
     """Names of the columns, and the line (from 0) of the first row of values."""
-    lines = _first_lines(path, layout.encoding)
+    lines = first_lines(path, layout.encoding)
     row, names = layout.skipped_lines, list[str]()
     if layout.heading:
         if _next_row(lines, layout.skipped_lines, None) >= len(lines):
@@ -140,11 +146,6 @@ def _head(path: Path, layout: TextLayout, apart: Sequence[str]) -> tuple[list[st
         raise InputError(str(path), "no row of values", "a row of values", "restore the file")
     first = _words(lines[row], layout, is_heading=False)
     return (_fitted(names, first, apart, f"{path}, line {row + 1}") if names else _numbered(first)), row
-
-
-def _first_lines(path: Path, encoding: str) -> list[str]:
-    with path.open(encoding="utf-8-sig" if encoding.lower() in {"utf-8", "utf8"} else encoding) as file:
-        return [line.rstrip("\r\n") for line in islice(file, _LINES_ABOVE)]
 
 
 def _heading_row(path: Path, lines: list[str], layout: TextLayout) -> int:

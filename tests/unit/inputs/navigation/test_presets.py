@@ -10,6 +10,7 @@ from linepose.errors import InputError
 from linepose.inputs.navigation import read_navigation
 from linepose.inputs.navigation.presets import NAMES, PRESETS, recognised
 from linepose.inputs.navigation.table import TableSection
+from linepose.inputs.source import ScansSection
 
 PAGE = (Path(__file__).parents[4] / "docs" / "formats.md").read_text()
 FIRST_US = 1_700_000_000_250_000  # 2023-11-14 22:13:20.25 UTC, week 2288, 252818.25 s
@@ -114,6 +115,15 @@ def test_tum(tmp_path):
     np.testing.assert_allclose(np.rad2deg(record.log.euler_rad[0]), [0, 0, 30], atol=1e-9)
 
 
+def test_signs_in_comments_and_headings_are_none_between_cells(tmp_path):
+    """Two rows below many lines with commas, which no row has."""
+    for text in ("# x, y, z\n" * 30 + TUM, "# x; y\n" * 30 + TUM.replace(" ", ",").replace("#,", "# ")):
+        np.testing.assert_array_equal(read(tmp_path, text, "tum").log.time_us, [FIRST_US, FIRST_US + 100_000])
+    units = POSPAC.replace("(time in Sec, distance", "(" + "time, " * 30 + "distance")
+    text = units.replace(POSPAC[:60], "\n".join([POSPAC[:60], "*** a, b, c"] * 20), 1)
+    assert len(read(tmp_path, text, "pospac", gps_week=2288).log.time_us) == 2
+
+
 def test_kitti_takes_its_times_from_a_file(tmp_path):
     """Yaw is counted from east, counter-clockwise; one row a file."""
     folder = tmp_path / "oxts" / "data"
@@ -168,6 +178,33 @@ def test_file_of_each_preset_is_recognised_as_no_other(tmp_path):
     assert recognised(tmp_path / "log.txt") is None
 
 
+@pytest.mark.parametrize("sign", [",", " ", ";"])
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ["345600 52.1 13.4 100.0 0.1 0.2 90.0 1", "345601 52.1 13.4 100.0 0.1 0.2 90.0 1"],  # a status
+        ["345600 52.1 13.4 100.0 0.1 0.2 90.0 1", "345601 52.1 13.4 100.0 0.1 0.2 90.0 2"],  # a count
+        ["1 52.1 13.4 100.0 0.1 0.2 90.0 700000.0", "2 52.1 13.4 100.0 0.1 0.2 90.0 700000.1"],  # past the week
+        ["1 52.1 13.4 100.0 0.1 0.2 90.0 345600.1", "2 52.1 13.4 100.0 0.1 0.2 90.0 345600.0"],
+        ["1700000000.25 52.1 13.4 100.0 0.1 0.2 90.0 1", "1700000000.35 52.1 13.4 100.0 0.1 0.2 90.0 1"],
+        ["1700000000.25 52.1 13.4 100.0 0 0 0 0", "1700000000.35 52.1 13.4 100.0 0 0 0 0"],
+    ],
+)
+def test_eight_numbers_that_a_format_does_not_allow_are_not_of_it(tmp_path, rows, sign):
+    """Neither frames of HySpex nor quaternions: latitude and longitude would change places without a word."""
+    (tmp_path / "log.txt").write_text("\n".join(row.replace(" ", sign) for row in rows) + "\n")
+    assert recognised(tmp_path / "log.txt") is None
+
+
+def test_a_long_log_of_eight_numbers_is_recognised(tmp_path):
+    """Whose head ends within a row, and whose first quaternions are zeros."""
+    frames = (f"{n + 1} 151.1937 -33.8892 42.5 5 -10 30 {WEEK_S + n / 100:.3f}\n" for n in range(1000))
+    turns = (f"{1.7e9 + n / 100:.2f} 20 10 5 0 0 {'0 0' if n < 9 else '0.5 0.866'}\n" for n in range(1000))
+    for preset, rows in {"hyspex": frames, "tum": turns}.items():
+        (tmp_path / "log.txt").write_text("".join(rows))
+        assert recognised(tmp_path / "log.txt") == {"preset": preset}
+
+
 def test_page_names_every_preset():
     assert set(re.findall(r"^\| `(\w+)` \|", PAGE, re.MULTILINE)) >= set(PRESETS)
     assert all(f"`{name}`" in NAMES for name in PRESETS)
@@ -195,10 +232,11 @@ WEEKLESS = "\n".join(line[7:] for line in IN_DEGREES.splitlines()[4:]) + "\n"
         ("oxts", "\ufeff" + OXTS.replace(",", ";"), {}),
         ("oxts", OXTS.replace(",", "; ").replace(".", ","), {"decimal": ","}),
         ("hyspex", HYSPEX.replace("  ", ", "), {"gps_week": 2288}),
+        ("inertial_explorer", INERTIAL_EXPLORER.replace(".", ","), {"decimal": ","}),
         ("pospac", re.sub(r", EAST SD.*", "", POSPAC).replace(" 0.02 0.01 0.03 0.1 0.2 0.3", ""), {"gps_week": 2288}),
     ],
 )
-def test_what_a_file_says_of_itself_counts(tmp_path, preset, text, keys):
+def test_what_a_file_says_of_itself_counts(tmp_path, caplog, preset, text, keys):
     (tmp_path / "log.txt").write_text(text)
     section = TableSection(format="table", file="log.txt", preset=preset, origin=ORIGIN, **keys)
     record = read_navigation(section, tmp_path)
@@ -207,6 +245,19 @@ def test_what_a_file_says_of_itself_counts(tmp_path, preset, text, keys):
     np.testing.assert_allclose(record.log.position_m, 0, atol=1e-6)
     assert record.covariances is None
     assert recognised(tmp_path / "log.txt")["preset"] == preset
+    assert ("has no standard deviations, which preset pospac has in NORTH SD" in caplog.text) == (preset == "pospac")
+
+
+def test_week_of_the_scans_where_an_export_has_none(tmp_path):
+    """Of Inertial Explorer, whose preset names a column of the week."""
+    (tmp_path / "a-times.csv").write_text(f"{FIRST_US + 5}\n{FIRST_US + 6}\n")
+    (tmp_path / "a.png").touch()
+    navigation = {"format": "table", "file": "log.txt", "preset": "inertial_explorer"}
+    source = ScansSection(kind="scans", dataset="x", scans="*.png", navigation=navigation)
+    for text, lacking in ((WEEKLESS, "gps_week"), (INERTIAL_EXPLORER, None)):
+        (tmp_path / "log.txt").write_text(text)
+        assert source.navigation.lacking(tmp_path) == lacking
+        np.testing.assert_array_equal(read_navigation(source, tmp_path).log.time_us, [FIRST_US, FIRST_US + 100_000])
 
 
 @pytest.mark.parametrize(
@@ -222,7 +273,30 @@ def test_clock_of_rtklib_s_heading(tmp_path, caplog, clock, times):
     (tmp_path / "log.pos").write_text(text + "".join(f"{time} -33.8892 151.1937 42.5 5 -10 30\n" for time in times))
     section = TableSection(format="table", file="log.pos", preset="rtklib", columns={"attitude": ["6", "7", "8"]})
     np.testing.assert_array_equal(read_navigation(section, tmp_path).log.time_us, [FIRST_US, FIRST_US + 100_000])
-    assert "log.pos: heights above the geoid" in caplog.text
+    assert caplog.text.count("log.pos: heights above the geoid") == 1
+
+
+@pytest.mark.parametrize("sign", [",", ";", "\t"])
+@pytest.mark.parametrize(
+    ("clock", "times", "first"),
+    [
+        ("GPST", ["2023/11/14 22:13:38.250", "2023/11/14 22:13:38.350"], 5),
+        ("UTC ", ["2023/11/14 22:13:20.250", "2023/11/14 22:13:20.350"], 5),
+        ("GPST", ["2288{}252818.250", "2288{}252818.350"], 6),
+        ("GPST", ["2023/11/14{}22:13:38.250", "2023/11/14{}22:13:38.350"], 6),
+    ],
+)
+def test_rtklib_with_a_sign_between_cells(tmp_path, sign, clock, times, first):
+    """RTKLIB keeps the blank between date and time, and puts the sign between week and seconds."""
+    cells = ["  -33.889200000", " 151.193700000", "   42.5000", "  5.0", " -10.0", " 30.0"]
+    text = f"%  {clock}{sign} latitude(deg){sign}longitude(deg){sign} height(m)\n"
+    text += "".join(sign.join([time.format(sign), *cells]) + "\n" for time in times)
+    first += sign == "\t" and first == 5  # a tab counts as a blank
+    attitude = [str(number) for number in range(first, first + 3)]
+    record = read(tmp_path, text, "rtklib", origin=ORIGIN, columns={"attitude": attitude})
+    np.testing.assert_array_equal(record.log.time_us, [FIRST_US, FIRST_US + 100_000])
+    np.testing.assert_allclose(record.log.position_m, 0, atol=1e-6)
+    np.testing.assert_allclose(np.rad2deg(record.log.euler_rad), [[5, -10, 30]] * 2, atol=1e-9)
 
 
 def test_time_of_japan_is_refused(tmp_path):
