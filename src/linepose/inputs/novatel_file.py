@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-_MESSAGE: Final = re.compile(rb"([#%]\w+A,[^\r\n]*\*[0-9a-fA-F]{8})(\r*\n|\r+(?!\n)|\Z)")  # and its line end
+_MESSAGE: Final = re.compile(rb"([#%]\w+A(?:_\d)?,[^\r\n]*\*[0-9a-fA-F]{8})(\r*\n|\r+(?!\n)|\Z)")  # and its line end
 _MOST_TOGETHER: Final = 100_000
 _NMEA: Final = re.compile(rb"\$[A-Z]{2,}[ -#%-)+-~]*(\*[0-9A-Fa-f]{2})?\s*")  # of another port's log in the same file
 

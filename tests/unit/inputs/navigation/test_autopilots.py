@@ -180,5 +180,5 @@ def test_messages_without_their_time_are_told(tmp_path, kind):
     content = (tmp_path / "a.ulg").read_bytes()
     named = f"{kind}:uint64_t timestamp;".encode()
     (tmp_path / "a.ulg").write_bytes(content.replace(named, named.replace(b"timestamp", b"timestomp")))
-    with pytest.raises(InputError, match=rf"a.ulg: found ({kind} without timestamp|.*timestamp)"):
+    with pytest.raises(InputError, match=rf"a.ulg: found {kind} without timestamp, expected"):
         read_navigation(Px4Section(format="px4", file="a.ulg"), tmp_path)

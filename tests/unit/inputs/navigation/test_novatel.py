@@ -183,3 +183,18 @@ def test_line_ends_of_ascii_messages_do_not_matter(tmp_path, end):
     record = read_navigation(section("run.gps"), tmp_path)
     assert np.diff(record.log.time_us).tolist() == [10_000] * 4
     np.testing.assert_allclose(record.log.euler_rad[0], np.deg2rad([1, 2, 40]), atol=1e-9)
+
+
+@pytest.mark.parametrize("end", [b"\r\n", b"\n"])
+def test_messages_of_a_second_antenna_do_not_lose_those_beside_them(tmp_path, end):
+    """Whose names end in _1."""
+    lines = []
+    for n, crc in enumerate(CHECK_SUMS):
+        line = LINE.replace(b"{n}", b"%d" % n)
+        body = line[1:].partition(b"*")[0].replace(b"INSPVASA", b"INSPVASA_1")
+        lines += [b"%%%b*%08x" % (body, novatel_writer.crc(body)), line.replace(b"{crc}", crc)]
+    (tmp_path / "run.gps").write_bytes(end.join([*lines, b""]))
+    messages = read_messages(tmp_path / "run.gps")
+    assert messages.unknown_bytes == 0
+    assert len(messages.rows["INSPVA"]) == 10
+    assert len(read_navigation(section("run.gps"), tmp_path).log.time_us) == 5
