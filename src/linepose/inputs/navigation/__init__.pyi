@@ -1,10 +1,10 @@
 from .format import GeodeticSection as GeodeticSection
 from .format import NavigationFormat as NavigationFormat
 from .format import NavigationFormatSection as NavigationFormatSection
+from .poses import Poses as Poses
 from .reading import log_covariances as log_covariances
 from .reading import read_navigation as read_navigation
 from .record import Covariances as Covariances
 from .record import NavigationRecord as NavigationRecord
-from .record import Poses as Poses
 from .record import geodetic_record as geodetic_record
 from .record import local_record as local_record

@@ -10,8 +10,9 @@ from pydantic import Field
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs import axes
+from linepose.inputs.navigation.poses import Poses, check_increasing
 from linepose.inputs.navigation.positions_between import positions_between
-from linepose.inputs.navigation.record import Covariances, Poses, check_increasing, nearest_rows
+from linepose.inputs.navigation.record import Covariances, nearest_rows
 from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts_of
 from linepose.inputs.navigation.table_file import read_columns
 from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_us_of, to_rad, with_orientation
@@ -62,7 +63,7 @@ def with_attitudes(
     fix_us, position, sigma_m = fixes
     rows = usable_rows(fix_us, position, place)
     fix_us, position, sigma_m = fix_us[rows], position[rows], sigma_m[rows]
-    check_increasing(fix_us, place)
+    check_increasing(fix_us, place, rows + 1)
     attitude_us, euler, sigma_rad = _attitudes(section, folder)
     told = str(folder / section.file)
     if len(fix_us) < 2:
@@ -86,7 +87,7 @@ def _attitudes(section: AttitudeSection, folder: Path) -> tuple[NDArray[np.int64
     time_us, euler, sigma = (np.concatenate(values) for values in zip(*parts, strict=True))
     place = str(folder / section.file)
     rows = usable_rows(time_us, euler, place)
-    check_increasing(time_us[rows], place)
+    check_increasing(time_us[rows], place, rows + 1)
     return time_us[rows], euler[rows], sigma[rows]
 
 

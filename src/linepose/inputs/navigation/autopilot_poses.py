@@ -18,8 +18,8 @@ from pydantic import Field, PositiveFloat
 from linepose.arrays import Floats
 from linepose.errors import InputError, printable
 from linepose.inputs.navigation.format import GeodeticSection
+from linepose.inputs.navigation.poses import Poses, check_increasing
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S, positions_between
-from linepose.inputs.navigation.record import Poses, check_increasing
 from linepose.inputs.navigation.usable_rows import placed, usable_rows
 
 Stamps = NDArray[np.int64]
@@ -123,5 +123,5 @@ def autopilot_poses(flight: FlightLog, path: Path, maximum_gap_s: float) -> Pose
 
 def _used(times: Stamps, values: Floats, place: str) -> tuple[Stamps, Floats]:
     rows = usable_rows(times, values, place)
-    check_increasing(times[rows], place)
+    check_increasing(times[rows], place, rows + 1)
     return times[rows], values[rows]

@@ -19,14 +19,9 @@ from pydantic import Field, PositiveFloat
 from linepose.errors import InputError
 from linepose.inputs import axes
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
+from linepose.inputs.navigation.poses import Poses, check_increasing
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S, positions_between
-from linepose.inputs.navigation.record import (
-    Covariances,
-    NavigationRecord,
-    Poses,
-    check_increasing,
-    geodetic_record,
-)
+from linepose.inputs.navigation.record import Covariances, NavigationRecord, geodetic_record
 from linepose.inputs.navigation.usable_rows import placed, usable_rows
 from linepose.inputs.nmea import Sentence, sentences
 from linepose.inputs.nmea_dates import has_date
@@ -100,11 +95,11 @@ def _read_file(path: Path, section: NmeaSection) -> tuple[Poses, Covariances]:
         log.warning(told, path, rows.without_height)
     if rows.nowhere:
         log.warning("%s: %d GGA whose latitude or longitude is none are left out", path, rows.nowhere)
-    fix_us, fixes = _used(rows.fix_us, _table(rows.fixes), f"{path}, GGA")
+    fix_us, fixes, _ = _used(rows.fix_us, _table(rows.fixes), f"{path}, GGA")
     kept = placed(fixes, f"{path}, GGA")
     fix_us, fixes = fix_us[kept], fixes[kept]
     angles = np.hstack([_table(rows.attitudes), _table(rows.sigmas, 6)])
-    attitude_us, attitudes = _used(rows.attitude_us, angles, f"{path}, PASHR")
+    attitude_us, attitudes, numbers = _used(rows.attitude_us, angles, f"{path}, PASHR")
     if len(fix_us) < 2:
         found, remedy = f"{len(fix_us)} GGA with a fix", "log GGA throughout the drive"
         if rows.without_height:
@@ -117,7 +112,7 @@ def _read_file(path: Path, section: NmeaSection) -> tuple[Poses, Covariances]:
     place = f"{path}, PASHR"
     between = positions_between(attitude_us, fix_us, fixes, section.maximum_fix_gap_s, place)
     times, values = attitude_us[between.near], attitudes[between.near]
-    poses = Poses(times, between.position, np.deg2rad(values[:, :3]), place, between.gap_key)
+    poses = Poses(times, between.position, np.deg2rad(values[:, :3]), place, between.gap_key, numbers[between.near])
     known = np.all(values[:, 3:] > 0, axis=1)
     sigma = values[known, 3:] * [1, 1, 1, *[np.pi / 180] * 3]
     return poses, Covariances(times[known], axes.diagonal_covariance(sigma), place)
@@ -127,12 +122,15 @@ def _table(rows: list[Any], width: int = 3) -> np.ndarray:
     return np.array(rows, dtype=float).reshape(-1, width)
 
 
-def _used(times: list[int], values: np.ndarray, place: str) -> tuple[np.ndarray, np.ndarray]:
-    """Times (K,) and values (K, N) that can be used, in order, of which the first three must be numbers."""
+def _used(times: list[int], values: np.ndarray, place: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times (K,) and values (K, N) that can be used, in order, and their numbers among all, from 1.
+
+    The first three values must be numbers.
+    """
     time_us = np.array(times, dtype=np.int64)
     rows = usable_rows(time_us, values[:, :3], place)
-    check_increasing(time_us[rows], place)
-    return time_us[rows], values[rows]
+    check_increasing(time_us[rows], place, rows + 1)
+    return time_us[rows], values[rows], rows + 1
 
 
 def _add(rows: _Rows, sentence: Sentence) -> None:

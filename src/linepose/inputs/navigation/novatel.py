@@ -22,7 +22,8 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs import axes, gps_time
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
-from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, nearest_rows
+from linepose.inputs.navigation.poses import Poses
+from linepose.inputs.navigation.record import Covariances, NavigationRecord, geodetic_record, nearest_rows
 from linepose.inputs.novatel_file import UnknownBytes, messages
 
 Row = tuple[float, ...]

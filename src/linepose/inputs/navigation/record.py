@@ -1,6 +1,5 @@
 """What every reader of a navigation log returns, and the way there from what the devices write."""
 
-import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -15,7 +14,6 @@ from linepose.inputs import gps_time
 from linepose.inputs.axes import turned, turned_angles
 from linepose.inputs.local_frame import (
     LocalFrame,
-    check_geodetic,
     check_is_near,
     geodetic_from_local,
     local_from_geodetic,
@@ -24,16 +22,21 @@ from linepose.inputs.local_frame import (
     utm_crs,
 )
 from linepose.inputs.navigation.format import GeodeticSection
-from linepose.inputs.navigation.usable_rows import placed
+from linepose.inputs.navigation.poses import (
+    Poses,
+    check_increasing,
+    check_numbers,
+    check_places,
+    check_poses,
+    placed_poses,
+    usable_poses,
+)
 from linepose.survey.corrected import corrected_covariances, corrected_poses
 from linepose.survey.navigation import NavigationCovariances
 from linepose.survey.navigation_log import NavigationLog
 
 _FEWEST: Final = 2
 _POSES_AT_ONCE: Final = 50_000
-_EARLIEST_US, _LATEST_US = 315_964_800_000_000, 4_102_444_800_000_000  # 1980 to 2100
-
-log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -60,21 +63,6 @@ class NavigationRecord:
 
 
 @dataclass(frozen=True)
-class Poses:
-    """Poses of one file: time_us (K,), position (K, 3), euler_rad (K, 3) in north, east, down; `place` names the file.
-
-    `position` is north, east, down (m), or latitude, longitude (deg), ellipsoidal height (m). `gap_key` is the key by
-    which poses were left out that would fill a gap, where some were.
-    """
-
-    time_us: NDArray[np.int64]
-    position: Floats
-    euler_rad: Floats
-    place: str
-    gap_key: str | None = None
-
-
-@dataclass(frozen=True)
 class Covariances:
     """Covariances (C, 6, 6) of north, east, down (m), roll, pitch, yaw (rad) at times (C,); C may be 0."""
 
@@ -85,7 +73,9 @@ class Covariances:
 
 def local_record(poses: Sequence[Poses], covariances: Sequence[Covariances]) -> NavigationRecord:
     """The record of files with positions in metres; raises InputError naming a broken record."""
-    both = _joined_poses(poses)
+    for one in poses:
+        check_numbers(one)
+    both = _joined_poses([usable_poses(one) for one in poses])
     log = _log(both, both.position, both.euler_rad)
     return NavigationRecord(log, _joined_covariances(covariances))
 
@@ -98,14 +88,14 @@ def geodetic_record(
     Angles and covariances, which are about true north at each place, are turned into the frame with the positions.
     Raises InputError naming a broken record.
     """
-    poses = [_placed(_known(one)) for one in poses]
+    poses = [usable_poses(one) for one in poses]
     for one in poses:
-        check_geodetic(one.position, one.place)
-    both = _joined_poses(poses)
+        check_places(one)
+    both = _joined_poses([placed_poses(one) for one in poses])
     frame = _frame(section, both.position[0])
     position, euler = _in_frame(frame, both)
     if not np.all(np.isfinite(position)):
-        place = f"{both.place}, record {np.flatnonzero(~np.all(np.isfinite(position), axis=1))[0] + 1}"
+        place = both.place_of(int(np.flatnonzero(~np.all(np.isfinite(position), axis=1))[0]))
         raise InputError(place, f"a place outside {frame.crs}", "one inside it", "correct source.navigation.crs")
     at_poses = _joined_covariances(covariances)
     if at_poses is not None:
@@ -184,10 +174,8 @@ def nearest_rows(time_us: NDArray[np.int64], wanted_us: NDArray[np.int64]) -> ND
 
 
 def _joined_poses(parts: Sequence[Poses]) -> Poses:
-    parts = [_in_order(part) for part in parts]
     for part in parts:
-        _check(part)
-    parts = [_without_repeats(part) for part in parts]
+        check_poses(part)
     ordered = sorted(parts, key=lambda part: int(part.time_us[0]))
     gps_time.tell_lost_weeks(int(ordered[0].time_us[0]), ordered[0].place)
     for before, after in pairwise(ordered):
@@ -204,50 +192,11 @@ def _joined_poses(parts: Sequence[Poses]) -> Poses:
         np.concatenate([part.euler_rad for part in ordered]),
         ordered[0].place,
         next((part.gap_key for part in ordered if part.gap_key), None),
+        np.concatenate([part.numbers for part in ordered]),
     )
     if len(joined.time_us) < _FEWEST:
         raise InputError(joined.place, f"{len(joined.time_us)} poses", "two or more", "restore the log")
     return joined
-
-
-def _known(part: Poses) -> Poses:
-    """The poses without those that hold no numbers, as before the first solution; how many is told."""
-    known = np.all(np.isfinite(np.hstack([part.position, part.euler_rad])), axis=1)
-    if known.all() or not known.any():
-        return part
-    log.warning("%s: %d of %d records without a value are left out", part.place, np.sum(~known), len(known))
-    return _of(part, known)
-
-
-def _placed(part: Poses) -> Poses:
-    """The poses without those of a device that had no fix yet; how many is told."""
-    kept = placed(part.position, part.place)
-    return part if np.all(kept) else _of(part, kept)
-
-
-def _of(part: Poses, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Poses:
-    """These of the poses."""
-    return replace(part, time_us=part.time_us[rows], position=part.position[rows], euler_rad=part.euler_rad[rows])
-
-
-def _in_order(part: Poses) -> Poses:
-    """The poses sorted by time, where some stand behind later ones; how many is told."""
-    if not len(part.time_us):
-        return part
-    behind = int(np.count_nonzero(part.time_us < np.maximum.accumulate(part.time_us)))
-    if not behind:
-        return part
-    log.warning("%s: %d records stand behind later ones; all are sorted by time", part.place, behind)
-    return _of(part, np.argsort(part.time_us, kind="stable"))
-
-
-def _without_repeats(part: Poses) -> Poses:
-    """The poses without those that repeat the one before in time and all values: as of loggers that poll too often."""
-    kept = _not_repeated(part.time_us, np.hstack([part.position, part.euler_rad]))
-    if np.all(kept):
-        return part
-    log.warning("%s: %d records that repeat the one before are passed over", part.place, np.count_nonzero(~kept))
-    return _of(part, kept)
 
 
 def _not_repeated(time_us: NDArray[np.int64], values: Floats) -> NDArray[np.bool_]:
@@ -256,38 +205,6 @@ def _not_repeated(time_us: NDArray[np.int64], values: Floats) -> NDArray[np.bool
     kept: NDArray[np.bool_] = np.ones(len(time_us), dtype=bool)
     kept[1:] = ~(same & (np.diff(time_us) == 0))
     return kept
-
-
-def _check(part: Poses) -> None:
-    if not len(part.time_us):
-        raise InputError(part.place, "no pose", "a log of poses", "restore the log")
-    values = np.hstack([part.position, part.euler_rad])
-    for row in np.flatnonzero(~np.all(np.isfinite(values), axis=1))[:1]:
-        raise InputError(f"{part.place}, record {row + 1}", "a value that is no number", "a pose", "remove the record")
-    for row in np.flatnonzero((part.time_us < _EARLIEST_US) | (part.time_us > _LATEST_US))[:1]:
-        raise InputError(
-            f"{part.place}, record {row + 1}",
-            f"time {part.time_us[row]} us since 1970",
-            "a time between 1980 and 2100",
-            "correct the time's unit, scale or week in source.navigation",
-        )
-    for row in np.flatnonzero(np.any(np.abs(part.euler_rad) > 2 * np.pi + 1e-9, axis=1))[:1]:
-        remedy = "correct the unit of the angles in source.navigation"
-        found = f"roll, pitch, yaw {', '.join(f'{one:g}' for one in part.euler_rad[row])} rad"
-        raise InputError(f"{part.place}, record {row + 1}", found, "at most a full turn", remedy)
-    check_increasing(part.time_us, part.place, _not_repeated(part.time_us, values))
-
-
-def check_increasing(time_us: NDArray[np.int64], place: str, checked: NDArray[np.bool_] | None = None) -> None:
-    """Raise InputError naming the first of times (K,) that is not after the one before it, of those `checked` (K,)."""
-    wrong = np.diff(time_us) <= 0
-    for row in np.flatnonzero(wrong if checked is None else wrong & checked[1:])[:1]:
-        raise InputError(
-            f"{place}, record {row + 2}",
-            f"time {time_us[row + 1]} us",
-            f"a time after the record before it ({time_us[row]} us)",
-            "sort the records by time and remove repeated ones",
-        )
 
 
 def _joined_covariances(parts: Sequence[Covariances]) -> NavigationCovariances | None:

@@ -15,7 +15,8 @@ from pydantic import Field
 from linepose.inputs.gps_time import TimeScale
 from linepose.inputs.location_files import location_rows, location_unix_us
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
-from linepose.inputs.navigation.record import NavigationRecord, Poses, geodetic_record
+from linepose.inputs.navigation.poses import Poses
+from linepose.inputs.navigation.record import NavigationRecord, geodetic_record
 
 _USE_COLUMN: Final = 9
 
@@ -45,10 +46,12 @@ FORMAT: Final = NavigationFormat("resonon", ResononSection, read, has_covariance
 
 def _poses(path: Path, time_scale: TimeScale) -> Poses:
     rows = location_rows(path)
+    numbers = np.arange(1, len(rows) + 1)
     if rows.shape[1] > _USE_COLUMN:
         usable = rows[:, _USE_COLUMN] != 0
         if not usable.all():
             log.warning("%s: %d rows that the recorder marks as of no use are left out", path, np.sum(~usable))
-        rows = rows[usable]
+        rows, numbers = rows[usable], numbers[usable]
     euler = rows[:, 1:4] * [-1.0, 1.0, 1.0]
-    return Poses(location_unix_us(rows[:, 0], time_scale, path), rows[:, [5, 4, 6]], euler, str(path))
+    times = location_unix_us(rows[:, 0], time_scale, path)
+    return Poses(times, rows[:, [5, 4, 6]], euler, str(path), records=numbers)

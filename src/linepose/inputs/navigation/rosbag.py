@@ -12,8 +12,9 @@ from typing import Any, Final, Literal
 from pydantic import Field, PositiveFloat
 
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
+from linepose.inputs.navigation.poses import Poses
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
-from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
+from linepose.inputs.navigation.record import Covariances, NavigationRecord, geodetic_record, local_record
 from linepose.inputs.navigation.rosbag_axes import AttitudeAxes, OrientationCovariance
 from linepose.inputs.navigation.rosbag_fixes import fixes_and_imu
 from linepose.inputs.navigation.rosbag_messages import opened, topics_of

@@ -8,8 +8,9 @@ import numpy as np
 
 from linepose.errors import InputError
 from linepose.inputs import axes
+from linepose.inputs.navigation.poses import Poses, check_increasing
 from linepose.inputs.navigation.positions_between import positions_between
-from linepose.inputs.navigation.record import Covariances, Poses, check_increasing, nearest_rows
+from linepose.inputs.navigation.record import Covariances, nearest_rows
 from linepose.inputs.navigation.rosbag_axes import (
     AttitudeAxes,
     OrientationCovariance,
@@ -78,7 +79,7 @@ def _fixes(
     rows = rows[placed(places[rows], place)]
     if len(rows) < 2:
         raise InputError(place, f"{len(rows)} messages with a fix", "two or more", "record the whole drive")
-    check_increasing(times[rows], place)
+    check_increasing(times[rows], place, rows + 1)
     return times[rows], places[rows], np.array(covariance, dtype=float).reshape(-1, 3, 3)[rows], known
 
 

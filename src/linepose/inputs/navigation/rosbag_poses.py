@@ -8,7 +8,8 @@ from typing import Any, Final
 import numpy as np
 
 from linepose.inputs import axes
-from linepose.inputs.navigation.record import Covariances, Poses
+from linepose.inputs.navigation.poses import Poses
+from linepose.inputs.navigation.record import Covariances
 from linepose.inputs.navigation.rosbag_axes import (
     AttitudeAxes,
     OrientationCovariance,
@@ -56,7 +57,8 @@ def whole_poses(
     known = known_orientations(turned, place)
     times, euler = np.array(time_us, dtype=np.int64)[known], euler_of(turned[known], attitude_axes)
     world = position_jacobian(attitude_axes)
-    poses = Poses(times, np.array(position, dtype=float).reshape(-1, 3)[known] @ world.T, euler, place)
+    positions = np.array(position, dtype=float).reshape(-1, 3)[known] @ world.T
+    poses = Poses(times, positions, euler, place, records=np.flatnonzero(known) + 1)
     matrices = np.array(covariance, dtype=float).reshape(-1, 6, 6)[known]
     if not np.diagonal(matrices, axis1=1, axis2=2).any():
         return poses, Covariances(times[:0], matrices[:0], place)

@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.inputs.navigation.record import Covariances, Poses
+from linepose.inputs.navigation.poses import Poses
+from linepose.inputs.navigation.record import Covariances
 from linepose.inputs.navigation.rosbag_axes import (
     AttitudeAxes,
     euler_of,

@@ -16,7 +16,8 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs import axes, gps_time
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat, with_contents
-from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record
+from linepose.inputs.navigation.poses import Poses
+from linepose.inputs.navigation.record import Covariances, NavigationRecord, geodetic_record
 from linepose.inputs.patterns import Files, matching
 
 _TRAJECTORY: Final = 17

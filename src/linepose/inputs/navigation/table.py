@@ -19,9 +19,10 @@ from linepose.inputs.navigation import presets
 from linepose.inputs.navigation.attitude_log import AttitudeSection, with_attitudes
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
 from linepose.inputs.navigation.named_columns import keys_by_names
+from linepose.inputs.navigation.poses import Poses
 from linepose.inputs.navigation.positions_between import DEFAULT_GAP_S
 from linepose.inputs.navigation.preset_files import as_written, tell_heights, without_absent_sigmas
-from linepose.inputs.navigation.record import Covariances, NavigationRecord, Poses, geodetic_record, local_record
+from linepose.inputs.navigation.record import Covariances, NavigationRecord, geodetic_record, local_record
 from linepose.inputs.navigation.table_axes import keys_against
 from linepose.inputs.navigation.table_columns import Columns, Name, Names, parts_of
 from linepose.inputs.navigation.table_file import read_columns
@@ -244,7 +245,7 @@ def _read_part(table: Columns, section: TableSection) -> tuple[Poses, Covariance
     time_us = time_us_of(table, section, columns.time, columns.week)
     euler = euler_of(table, section, columns.attitude)
     position = _position(table, section, columns)
-    poses = Poses(time_us, position, euler, place)
+    poses = Poses(time_us, position, euler, place, records=table.cells.index.to_numpy() + 1)
     if columns.sigma_position is None or columns.sigma_attitude is None:
         return poses, Covariances(time_us[:0], np.empty((0, 6, 6)), place)
     return poses, _covariances(table, section, columns, time_us)

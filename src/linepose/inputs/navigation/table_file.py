@@ -24,6 +24,8 @@ def read_columns(
     if twice:
         raise InputError(str(path), f"column {twice[0]} twice", "each column once", "remove or rename one of them")
     try:
-        return Columns(path, table.to_pandas(timestamp_as_object=False), 0, decimal=layout.decimal)
+        cells = table.to_pandas(timestamp_as_object=False)
+        is_named = any(name is not None for name in cells.index.names)
+        return Columns(path, cells.reset_index(drop=not is_named), 0, decimal=layout.decimal)
     except (ValueError, TypeError) as error:
         raise InputError(str(path), " ".join(str(error).split()), "columns of numbers and text", "restore it") from None

@@ -98,4 +98,4 @@ def test_records_without_numbers_are_left_out(tmp_path, drive, caplog):
     table.tofile(tmp_path / "a.sbet")
     record = read_navigation(section(gps_week=int(drive.week[0]), origin=ORIGIN), tmp_path)
     np.testing.assert_array_equal(record.log.time_us, np.delete(drive.time_us, [0, 3]))
-    assert f"a.sbet: 2 of {len(table)} records without a value are left out" in caplog.text
+    assert "a.sbet: 2 records without a value are left out" in caplog.text

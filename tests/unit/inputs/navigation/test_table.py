@@ -168,7 +168,7 @@ def test_rows_out_of_order_are_sorted_and_counted(tmp_path, caplog):
     np.testing.assert_array_equal(record.log.time_us, FIRST_US + 10_000 * np.arange(4))
     np.testing.assert_allclose(record.log.position_m[:, 0], [1, 2, 3, 4])
     np.testing.assert_allclose(record.covariances.covariance[:, 0, 0], [1, 4, 9, 16])
-    assert "log.csv: 1 records stand behind later ones; all are sorted by time" in caplog.text
+    assert "log.csv: 1 records behind later ones are sorted by time" in caplog.text
 
 
 def test_seconds_of_the_week_are_not_taken_for_seconds_since_1980(tmp_path):
@@ -192,3 +192,36 @@ def test_a_log_with_sigmas_needs_no_file_of_covariances(tmp_path):
     source = ScansSection(kind="scans", covariances="covariances.csv")
     with pytest.raises(InputError, match=r"covariances\.csv: found no such file.*remove source\.covariances"):
         log_covariances(record, source, (3, 4, 5), tmp_path)
+
+
+GEODETIC = {
+    "coordinates": "geodetic",
+    "columns": {"position": ("lat", "lon", "h"), "attitude": ("roll_rad", "pitch_rad", "yaw_rad")},
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"lat": 95.0}, r"record 8: found latitude 95, longitude 13 deg, height 51 m"),
+        ({"yaw_rad": 9.0}, r"record 8: found roll, pitch, yaw 0.1, -0.2, 9 rad"),
+        ({"time_us": -5}, r"record 8: found time -5 us since 1970"),
+        ({"time_us": FIRST_US + 60_000}, rf"record 8: found time {FIRST_US + 60_000} us, expected a time after"),
+    ],
+)
+def test_records_have_the_numbers_of_the_file(tmp_path, change, told):
+    """Where rows of no place and of no value stand before them, one of them out of order."""
+    values = table(time_us=FIRST_US + 10_000 * np.array([0, 1, 2, 4, 3, 5, 6, 7, 8]), lat=52.0, lon=13.0, h=50.0)
+    values.loc[:2, ["lat", "lon"]] = 0.0
+    values.loc[3, "yaw_rad"] = np.nan
+    for name, value in {"h": 51.0, **change}.items():
+        values.loc[7, name] = value
+    with pytest.raises(InputError, match=rf"log\.csv, {told}"):
+        read(tmp_path, values, **GEODETIC)
+
+
+def test_the_index_of_a_parquet_file_is_a_column_as_others(tmp_path):
+    for index in ("time_us", "yaw_rad"):
+        table().set_index(index).to_parquet(tmp_path / "log.parquet")
+        record = read_navigation(TableSection(format="table", file="log.parquet"), tmp_path)
+        np.testing.assert_array_equal(record.log.time_us, FIRST_US + 100_000 * np.arange(3))
