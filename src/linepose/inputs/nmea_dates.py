@@ -22,7 +22,7 @@ _DATED: Final = re.compile(r"\$..(?:RMC,\d{6}[^,]*,(\w?)(?:,[^,]*){6},(\d{6})|ZD
 _HEAD_CHARACTERS: Final = 10_000_000
 _DAY_S: Final = 86_400
 _EPOCH: Final = datetime.date(1970, 1, 1).toordinal()
-_PAUSE_S: Final = 60  # up to which the time of the day goes on
+_PAUSE_S: Final = 5  # up to which the time of the day goes on
 _LATE_S: Final = 1  # by which a sentence may stand behind those after it
 
 log = logging.getLogger(__name__)

@@ -146,17 +146,21 @@ def test_a_second_talker_that_has_lost_its_weeks_does_not_count(tmp_path, caplog
     )
 
 
-def test_a_log_of_days_and_talkers_that_agree_says_nothing(tmp_path, caplog):
-    """Over midnight, with a sentence that comes late, and a second log of a week later at the same time of the day."""
+@pytest.mark.parametrize("later_s", [0, 12])
+def test_a_log_of_days_and_talkers_that_agree_says_nothing(tmp_path, caplog, later_s):
+    """Over midnight, with a sentence that comes late, and a second log of a week later at nearly the same time."""
     parts = [
         rmc(86_398 + n, "010524" if n < 2 else "020524") + zda(86_398 + n, f"{1 + n // 2:02d},05,2024") + one
         for n, one in enumerate(drive(86_398))
     ]
     parts[2] = parts[2].replace(gga(86_400), rmc(86_399, "010524") + gga(86_400))
-    later = "".join([rmc(86_398, "080524"), *drive(86_398)])
+    second_s = 86_398 + later_s
+    later = "".join([rmc(second_s, "090524" if later_s else "080524"), *drive(second_s)])
     record = read(tmp_path, "".join(parts) + later)
     first_us = MIDNIGHT_US + 86_398_000_000 + 100_000 * np.arange(21)
-    np.testing.assert_array_equal(record.log.time_us, [*first_us, *(first_us + 7 * 86_400_000_000)])
+    np.testing.assert_array_equal(
+        record.log.time_us, [*first_us, *(first_us + 7 * 86_400_000_000 + later_s * 1_000_000)]
+    )
     assert "follow from" not in caplog.text
 
 
