@@ -25,7 +25,7 @@ from linepose.pipeline.cluster.slurm import (
     may_begin_again,
     wait_for_earlier_jobs,
 )
-from linepose.pipeline.fork_server.client import name_server_folder
+from linepose.pipeline.fork_server.client import name_server
 from linepose.pipeline.parent_process import COMMAND, SNAKEMAKE, exit_with_process
 from linepose.pipeline.run_lock import check_no_run, hold_run_lock
 
@@ -42,7 +42,7 @@ BATCHES = LONG | {
 
 # Scripts end with the process that starts them, and that one with the `linepose run` that started it.
 os.environ[SNAKEMAKE] = str(os.getpid())
-name_server_folder()
+name_server()
 if COMMAND in os.environ and not workflow.remote_exec:  # which runs on this machine
     exit_with_process(COMMAND)
 

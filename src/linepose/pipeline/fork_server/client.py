@@ -3,32 +3,38 @@
 Only jobs of one thread are handed over: how many threads the numerical libraries have is settled when they are loaded.
 """
 
-import fcntl
 import json
 import os
 import secrets
 import socket
+import struct
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import Final
 
 from linepose.pipeline.parent_process import SNAKEMAKE
 
-FOLDER: Final = "LINEPOSE_FORK_SERVER"
-"""Environment variable: the folder of the server's socket, of a name that nobody can guess."""
+NAME: Final = "LINEPOSE_FORK_SERVER"
+"""Environment variable: the name of the server's socket, which no file stands for; where none, all run alone."""
 
 BEGUN: Final = b"b"
 """What a job sends when it begins; its exit code follows when it ends."""
 
 _SERVER: Final = "linepose.pipeline.fork_server.server"
 _WAITING: Final = 128
+_CREDENTIALS: Final = struct.Struct("3i")  # process, user, group
 
 
-def name_server_folder() -> None:
-    """Name the folder of this run's fork server; nothing is made before a job asks for it."""
-    os.environ[FOLDER] = str(Path(tempfile.gettempdir()) / f"linepose-{secrets.token_hex(8)}")
+def name_server() -> None:
+    """Name this run's fork server; nothing is started before a job asks for it."""
+    os.environ[NAME] = f"linepose-{secrets.token_hex(8)}"
+
+
+def is_own(connection: socket.socket) -> bool:
+    """Whether the process at the other end is this user's: names of sockets without a file are open to all."""
+    told = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
+    return bool(_CREDENTIALS.unpack(told)[1] == os.getuid())
 
 
 def run_forked(script: str, threads: int) -> int | None:
@@ -36,30 +42,30 @@ def run_forked(script: str, threads: int) -> int | None:
 
     Output goes to this process's streams. The job ends with this process, and with Snakemake.
     """
-    folder = os.environ.get(FOLDER)
-    if not folder or threads > 1 or not _can_follow(int(os.environ[SNAKEMAKE])):
+    name = os.environ.get(NAME)
+    if not name or threads > 1 or not _can_follow(os.environ.get(SNAKEMAKE, "")):
         return None
     try:
-        connection = _connect(Path(folder))
-    except OSError:
+        connection = _connect(f"\0{name}")
+    except (OSError, ValueError):
         return None
     with connection:
-        return _run(connection, script)
+        return _run(connection, script) if is_own(connection) else None
 
 
-def _can_follow(process: int) -> bool:
+def _can_follow(process: str) -> bool:
     """Whether this system, and what confines its processes, lets the server wait for another process to end."""
     if not hasattr(os, "pidfd_open"):
         return False
     try:
-        os.close(os.pidfd_open(process))
-    except OSError:
+        os.close(os.pidfd_open(int(process)))
+    except (OSError, ValueError, OverflowError):
         return False
     return True
 
 
 def _run(connection: socket.socket, script: str) -> int | None:
-    environment = {name: value for name, value in os.environ.items() if name != FOLDER}
+    environment = {name: value for name, value in os.environ.items() if name != NAME}
     job = json.dumps({"script": script, "folder": str(Path.cwd()), "environment": environment}).encode()
     try:
         sys.stdout.flush()
@@ -83,14 +89,16 @@ def _run(connection: socket.socket, script: str) -> int | None:
     return code[0]
 
 
-def _connect(folder: Path) -> socket.socket:
-    """A connection to the server, which is started where there is none yet."""
-    folder.mkdir(mode=0o700, exist_ok=True)
-    address = str(folder / "socket")
-    with (folder / "lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not Path(address).exists():
-            _start(address)
+def _connect(address: str) -> socket.socket:
+    """A connection to the server, which the first that finds none starts."""
+    with socket.socket(socket.AF_UNIX) as listener:
+        try:
+            listener.bind(address)
+        except OSError:  # there is one
+            pass
+        else:
+            listener.listen(_WAITING)
+            _start(listener)
     connection = socket.socket(socket.AF_UNIX)
     try:
         connection.connect(address)
@@ -100,14 +108,11 @@ def _connect(folder: Path) -> socket.socket:
     return connection
 
 
-def _start(address: str) -> None:
-    with socket.socket(socket.AF_UNIX) as listener:
-        listener.bind(address)
-        listener.listen(_WAITING)
-        subprocess.Popen(
-            [sys.executable, "-m", _SERVER, str(listener.fileno()), os.environ[SNAKEMAKE]],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            pass_fds=[listener.fileno()],
-        )
+def _start(listener: socket.socket) -> None:
+    subprocess.Popen(
+        [sys.executable, "-m", _SERVER, str(listener.fileno()), os.environ[SNAKEMAKE]],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        pass_fds=[listener.fileno()],
+    )

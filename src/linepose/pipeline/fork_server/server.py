@@ -9,7 +9,6 @@ import multiprocessing
 import os
 import runpy
 import select
-import shutil
 import signal
 import socket
 import sys
@@ -18,18 +17,16 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from linepose.pipeline.fork_server.client import BEGUN
+from linepose.pipeline.fork_server.client import BEGUN, is_own
 
 
 def main() -> None:
     """Serve the listening socket and the Snakemake process that the arguments name, a descriptor and a process id."""
     descriptor, snakemake = (int(argument) for argument in sys.argv[1:])
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal sends it to the jobs too
-    listener = socket.socket(fileno=descriptor)
     try:
-        _serve(listener, snakemake)
+        _serve(socket.socket(fileno=descriptor), snakemake)
     finally:
-        shutil.rmtree(Path(listener.getsockname()).parent, ignore_errors=True)
         os._exit(0)  # without waiting for jobs, which end by themselves when Snakemake has ended
 
 
@@ -58,6 +55,8 @@ def _serve(listener: socket.socket, snakemake: int) -> None:
 
 def _begin(listener: socket.socket) -> None:
     with listener.accept()[0] as connection:
+        if not is_own(connection):
+            return
         length, streams, _, _ = socket.recv_fds(connection, 8, 2)
         try:
             job = json.loads(_read(connection, int.from_bytes(length, "big")))

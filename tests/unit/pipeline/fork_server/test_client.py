@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from linepose.pipeline.fork_server.client import FOLDER, name_server_folder, run_forked
+from linepose.pipeline.fork_server.client import NAME, name_server, run_forked
 from linepose.pipeline.fork_server.server import imported_modules
 from linepose.pipeline.parent_process import SNAKEMAKE
 
@@ -23,8 +23,8 @@ def snakemake(monkeypatch):
     """A process that stands for Snakemake; the server ends with it."""
     process = subprocess.Popen(["sleep", "600"])
     monkeypatch.setenv(SNAKEMAKE, str(process.pid))
-    monkeypatch.setenv(FOLDER, "")
-    name_server_folder()
+    monkeypatch.setenv(NAME, "")
+    name_server()
     yield process
     process.kill()
     process.wait()
@@ -83,7 +83,7 @@ def test_a_script_whose_process_is_killed_fails_in_one_line(snakemake, tmp_path,
 
 def test_a_job_of_several_threads_or_without_a_run_is_not_handed_over(snakemake, tmp_path, monkeypatch):
     assert run_forked(script(tmp_path, ""), threads=2) is None
-    monkeypatch.delenv(FOLDER)
+    monkeypatch.delenv(NAME)
     assert run_forked(script(tmp_path, ""), threads=1) is None
 
 
@@ -93,23 +93,39 @@ def test_where_a_process_cannot_be_followed_no_server_is_started(snakemake, tmp_
 
     monkeypatch.setattr(os, "pidfd_open", forbidden)
     assert run_forked(script(tmp_path, ""), threads=1) is None
-    assert not Path(os.environ[FOLDER]).exists()
+    assert os.environ[NAME] not in sockets()
 
 
-def test_a_job_whose_server_was_killed_runs_in_its_own_process(snakemake, tmp_path):
+def test_a_server_that_was_killed_is_followed_by_another(snakemake, tmp_path):
     server = tmp_path / "server"
     tells = script(tmp_path, f"import os; open({str(server)!r}, 'w').write(str(os.getppid()))")
     assert run_forked(tells, threads=1) == 0
-    os.kill(int(server.read_text()), signal.SIGKILL)
-    until(lambda: not is_alive(int(server.read_text())))
+    first = int(server.read_text())
+    os.kill(first, signal.SIGKILL)
+    until(lambda: not is_alive(first))
+    assert run_forked(tells, threads=1) == 0
+    assert int(server.read_text()) != first
+
+
+def sockets() -> str:
+    return Path("/proc/net/unix").read_text()
+
+
+def test_the_server_and_its_socket_are_gone_when_snakemake_has_ended(snakemake, tmp_path):
+    assert run_forked(script(tmp_path, ""), threads=1) == 0
+    assert os.environ[NAME] in sockets()
+    snakemake.kill()
+    until(lambda: os.environ[NAME] not in sockets())
+
+
+def test_a_name_that_no_socket_can_have_leaves_jobs_to_themselves(snakemake, tmp_path, monkeypatch):
+    monkeypatch.setenv(NAME, "x" * 200)
     assert run_forked(script(tmp_path, ""), threads=1) is None
 
 
-def test_the_server_and_its_folder_are_gone_when_snakemake_has_ended(snakemake, tmp_path):
-    assert run_forked(script(tmp_path, ""), threads=1) == 0
-    assert Path(os.environ[FOLDER]).is_dir()
-    snakemake.kill()
-    until(lambda: not Path(os.environ[FOLDER]).exists())
+def test_another_users_server_is_not_trusted(snakemake, tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "getuid", lambda: -1)
+    assert run_forked(script(tmp_path, "raise SystemExit(3)"), threads=1) is None
 
 
 def test_a_job_ends_when_its_client_is_killed(snakemake, tmp_path):
