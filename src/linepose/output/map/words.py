@@ -4,6 +4,7 @@ from typing import Any
 
 import pandas as pd
 
+from linepose.inputs.tie_points.patches import HALF, SEARCH
 from linepose.output.map.budget import ALL
 from linepose.output.map.platform_map import ScanMap
 
@@ -55,7 +56,11 @@ def fit_sentence(fit: "pd.Series[Any]") -> str:
     scans = scans if count["n_scans_left_out"] else ""
     if not count["n_compared"]:
         if not count["n_tried"]:
-            return f"No two of {count['n_scans']} scans show the same ground, so none was compared.{scans}"
+            side = 2 * (HALF + SEARCH) + 1
+            return (
+                f"No two of {count['n_scans']} scans share {side} by {side} pixels of level ground, so none was "
+                f"compared.{scans}"
+            )
         return f"Overlapping scans could not be compared: of {count['n_tried']} patches {left_out}.{scans}"
     after, before, pixel = (float(fit[key]) for key in ("rms_after_m", "rms_before_m", "pixel_m"))
     return (

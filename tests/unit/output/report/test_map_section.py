@@ -83,7 +83,7 @@ def test_misfit_is_told_in_millimetres_and_pixels_with_what_was_left_out(tmp_pat
     )
     fit_written(tmp_path, n_compared=0, n_tried=0, n_scans_left_out=0)
     assert section_of(tmp_path, BUDGET, **MAPPED).paragraphs[-1] == (
-        "No two of 3 scans show the same ground, so none was compared."
+        "No two of 3 scans share 65 by 65 pixels of level ground, so none was compared."
     )
 
 
