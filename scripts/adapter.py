@@ -29,7 +29,7 @@ def stage(job: Any) -> Iterator[logging.Logger]:
     Each table that it writes says which settings, inputs and code made it. When Snakemake is killed the job ends too,
     or it would be in the way of the run that goes on. A job of one thread runs in a fork of its run's fork server.
     """
-    code = run_forked(sys.argv[0], job.threads)
+    code = run_forked(sys.argv[0], job.rule, Path(job.log[0]), job.threads)
     if code is not None:
         sys.exit(code)
     from linepose.errors import one_line

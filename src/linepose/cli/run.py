@@ -4,7 +4,7 @@ import json
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -12,6 +12,8 @@ from linepose.cli.options import HERE, ProjectFolder
 
 if TYPE_CHECKING:
     from linepose.config.project import Project
+
+_LEAST_FREE_MB: Final = 20  # for Snakemake's own files and a small result; larger ones tell for themselves
 
 
 def run(
@@ -41,12 +43,14 @@ def run(
     from linepose.cli.snakemake_process import run_snakemake
     from linepose.cli.workflow_files import find_profile, find_workflow, says_cores
     from linepose.experiments.registry import compared_platforms
+    from linepose.pipeline.cluster.node import check_room
     from linepose.pipeline.project_folder import chosen_platforms, find_project, load_platforms_project
     from linepose.pipeline.run_lock import check_no_run
 
     root = find_project(project)
     if not dry_run:
         check_no_run(root)
+        check_room(root, str(root), _LEAST_FREE_MB)
     chosen = chosen_platforms(names or [], all_platforms, root)
     loaded = load_platforms_project(chosen, root, compared_platforms)
     loaded.check_files()
@@ -89,7 +93,7 @@ def _run(snakefile: Path, root: Path, chosen: Sequence[str], arguments: Sequence
     from rich.console import Console
 
     from linepose.cli.platform_lines import PlatformLines
-    from linepose.cli.snakemake_process import follow_snakemake
+    from linepose.cli.snakemake_process import BY_KEYBOARD, follow_snakemake
     from linepose.cli.stage_lines import StageLines
 
     several = len(chosen) > 1
@@ -115,6 +119,9 @@ def _run(snakefile: Path, root: Path, chosen: Sequence[str], arguments: Sequence
             code = follow_snakemake(snakefile, root, arguments, log, hear, show)
     else:
         code = follow_snakemake(snakefile, root, arguments, log, lambda message: tell(lines.hear(message)))
+    if code == BY_KEYBOARD:
+        tell("linepose: run stopped by the keyboard; the same command goes on")
+        raise typer.Exit(code)
     if isinstance(lines, PlatformLines):
         for line in lines.unheard(chosen, begun_s):
             tell(line)

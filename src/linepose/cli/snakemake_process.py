@@ -12,6 +12,9 @@ from typing import Final
 
 from linepose.pipeline.parent_process import COMMAND
 
+BY_KEYBOARD: Final = 128 + 2
+"""Exit code of a run that was ended by the keyboard, as shells tell of a process that SIGINT has ended."""
+
 _PATIENCE_S: Final = 10.0
 _BAR: Final = re.compile(r"\d+%\||\d+it ")  # of tqdm
 
@@ -48,8 +51,9 @@ def follow_snakemake(
             end = threading.Timer(_PATIENCE_S, child.kill)
             end.start()
             _hear_all(told.pieces(), file.write, lambda _: None, None)
+            child.wait()
             end.cancel()
-            return child.wait()
+            return BY_KEYBOARD
 
 
 def files_of_workflow(snakefile: Path, root: Path, arguments: Sequence[str]) -> set[str]:

@@ -20,6 +20,7 @@ from linepose.errors import InputError
 from unit import made_up
 from unit.recorded_files import write_platform_files
 
+HYSPEX = "".join(f"{row} 151.0 -33.0 42.0 5.0 -10.0 30.0 {252818.25 + row / 100}\n" for row in (1, 2))
 GIVEN = [
     *("--focal-length-mm", "8.2", "--pixel-pitch-um", "7.407407", "--pixels", "648"),
     *("--position-m", "0.2", "0", "-0.8", "--euler-deg", "-56", "0", "-90"),
@@ -96,7 +97,7 @@ def test_new_takes_every_navigation_format(here, name):
 @pytest.mark.parametrize(
     ("file", "text", "keys"),
     [
-        ("log.txt", "1 151.0 -33.0 42.0 5.0 -10.0 30.0 252818.25\n", {"format": "table", "preset": "hyspex"}),
+        ("log.txt", HYSPEX, {"format": "table", "preset": "hyspex"}),
         ("a.gps", "#INSPVAXA,COM1,0,73.5,FINESTEERING,1695,309428.0\n", {"format": "novatel"}),
         ("scan.nav", "$GPGGA,100000.00,5000.0000,N,00800.0000,E,4,12,0.8,52.3,M,47.7,M,,\n", {"format": "nmea"}),
         ("run.bag", "", {"format": "rosbag"}),
@@ -122,7 +123,7 @@ def test_new_recognises_a_log(here, file, text, keys):
 def test_new_names_a_log_as_it_lies_below_the_platforms_data(here):
     folder = here / "data" / "mine" / "log"
     folder.mkdir(parents=True)
-    (folder / "a.txt").write_text("1 151.0 -33.0 42.0 5.0 -10.0 30.0 252818.25\n")
+    (folder / "a.txt").write_text(HYSPEX)
     assert given("new", "mine", *GIVEN, "--navigation-file", "data/mine/log/a.txt").exit_code == 0
     assert load_platform(here / "config" / "platforms", "mine").source.navigation.file == "log/a.txt"
 

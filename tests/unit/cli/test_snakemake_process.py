@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from linepose.cli import snakemake_process
-from linepose.cli.snakemake_process import follow_snakemake
+from linepose.cli.snakemake_process import BY_KEYBOARD, follow_snakemake
 
 CHILD = """
 import sys
@@ -42,3 +42,11 @@ def test_bars_are_drawn_for_a_terminal_and_not_kept(child, tmp_path):
     assert heard == ["terminal", "last words"]
     assert bars == ["10%|#   | 1/10", "20%|#   | 2/10"]
     assert (tmp_path / "logs" / "run.log").read_text().splitlines() == heard
+
+
+def test_a_run_that_the_keyboard_ends_is_followed_to_its_end(child, tmp_path):
+    def hear(message):
+        raise KeyboardInterrupt
+
+    assert child(hear) == BY_KEYBOARD
+    assert (tmp_path / "logs" / "run.log").read_text().splitlines()[-1] == "last words"

@@ -62,13 +62,14 @@ def check_node(root: Path) -> None:
     check_room(root, here)
 
 
-def check_room(root: Path, here: str) -> None:
+def check_room(root: Path, here: str, least_free_mb: int = _LEAST_FREE_MB) -> None:
     """Raises InputError where the project's folder, or that for temporary files, has no room for results."""
-    for folder in (root, Path(tempfile.gettempdir())):
+    temporary = os.environ.get("TMPDIR", "")  # which not all look at as Python does
+    for folder in (root, Path(temporary if Path(temporary).is_dir() else tempfile.gettempdir())):
         free_mb = shutil.disk_usage(folder).free / 1e6
-        if free_mb < _LEAST_FREE_MB:
-            found, expected = f"{free_mb:.0f} MB free in {folder.resolve()}", f"at least {_LEAST_FREE_MB} MB"
-            raise InputError(here, found, expected, "make room there")
+        if free_mb < least_free_mb:
+            found, expected = f"{free_mb:.0f} MB free in {folder.resolve()}", f"at least {least_free_mb} MB"
+            raise InputError(here, found, expected, "make room there, or set TMPDIR to another folder")
 
 
 def check_clock(root: Path, here: str) -> None:

@@ -23,6 +23,7 @@ BEGUN: Final = b"b"
 
 _SERVER: Final = "linepose.pipeline.fork_server.server"
 _WAITING: Final = 128
+_KILLED: Final = 128 + 9  # as shells tell of a process that SIGKILL has ended
 _CREDENTIALS: Final = struct.Struct("3i")  # process, user, group
 
 
@@ -37,10 +38,11 @@ def is_own(connection: socket.socket) -> bool:
     return bool(_CREDENTIALS.unpack(told)[1] == os.getuid())
 
 
-def run_forked(script: str, threads: int) -> int | None:
+def run_forked(script: str, rule: str, log: Path, threads: int) -> int | None:
     """The exit code of a script that the fork server ran; None where it did not begin, and is to run here.
 
-    Output goes to this process's streams. The job ends with this process, and with Snakemake.
+    Output goes to this process's streams. The job ends with this process, and with Snakemake. That its own process was
+    killed is told in the log of its rule.
     """
     name = os.environ.get(NAME)
     if not name or threads > 1 or not _can_follow(os.environ.get(SNAKEMAKE, "")):
@@ -50,7 +52,10 @@ def run_forked(script: str, threads: int) -> int | None:
     except (OSError, ValueError):
         return None
     with connection:
-        return _run(connection, script) if is_own(connection) else None
+        code = _run(connection, script) if is_own(connection) else None
+    if code == _KILLED:
+        _tell_killed(rule, log)
+    return code
 
 
 def _can_follow(process: str) -> bool:
@@ -82,11 +87,14 @@ def _run(connection: socket.socket, script: str) -> int | None:
         code = b""
     except KeyboardInterrupt:  # which the job has from the terminal too
         return 130
-    if not code:
-        fault = "found its process killed, expected its end; see whether memory was short, and run again"
-        print(f"{Path(script).name}: {fault}", file=sys.stderr)
-        return 137
-    return code[0]
+    return code[0] if code else _KILLED
+
+
+def _tell_killed(rule: str, log: Path) -> None:
+    told = f"linepose.{rule}: found its process killed, expected its end; see whether memory was short, and run again"
+    print(told, file=sys.stderr)
+    with log.open("a") as file:
+        print(told, file=file)
 
 
 def _connect(address: str) -> socket.socket:

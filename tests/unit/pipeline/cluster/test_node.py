@@ -74,7 +74,8 @@ def test_room_is_looked_for_among_temporary_files_too(tmp_path, monkeypatch):
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     usage = node.shutil.disk_usage
-    monkeypatch.setattr(node.tempfile, "gettempdir", lambda: str(scratch))
+    monkeypatch.setenv("TMPDIR", str(scratch))
+    monkeypatch.setattr(node.tempfile, "gettempdir", lambda: str(tmp_path))  # as Python passes over a full one
     full = usage(tmp_path)._replace(free=0)
     monkeypatch.setattr(node.shutil, "disk_usage", lambda folder: full if folder == scratch else usage(folder))
     with pytest.raises(InputError, match=r"0 MB free in .*scratch"):

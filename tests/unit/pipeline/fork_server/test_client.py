@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from linepose.pipeline.fork_server.client import NAME, name_server, run_forked
+from linepose.pipeline.fork_server.client import NAME, name_server
+from linepose.pipeline.fork_server.client import run_forked as run_forked_job
 from linepose.pipeline.fork_server.server import imported_modules
 from linepose.pipeline.parent_process import SNAKEMAKE
 
@@ -28,6 +29,10 @@ def snakemake(monkeypatch):
     yield process
     process.kill()
     process.wait()
+
+
+def run_forked(script: str, threads: int) -> int | None:
+    return run_forked_job(script, "adjust", Path(script).with_suffix(".log"), threads)
 
 
 def script(folder: Path, text: str) -> str:
@@ -78,7 +83,9 @@ def test_a_script_that_cannot_import_is_told_by_itself(snakemake, tmp_path, capf
 
 def test_a_script_whose_process_is_killed_fails_in_one_line(snakemake, tmp_path, capfd):
     assert run_forked(script(tmp_path, "import os; os.kill(os.getpid(), 9)"), threads=1) == 137
-    assert capfd.readouterr().err.startswith("script.py: found its process killed")
+    told = capfd.readouterr().err
+    assert told.startswith("linepose.adjust: found its process killed")
+    assert (tmp_path / "script.log").read_text() == told
 
 
 def test_a_job_of_several_threads_or_without_a_run_is_not_handed_over(snakemake, tmp_path, monkeypatch):
@@ -131,7 +138,8 @@ def test_another_users_server_is_not_trusted(snakemake, tmp_path, monkeypatch):
 def test_a_job_ends_when_its_client_is_killed(snakemake, tmp_path):
     job = tmp_path / "job"
     long = script(tmp_path, f"import os, time; open({str(job)!r}, 'w').write(str(os.getpid())); time.sleep(600)")
-    asks = f"from linepose.pipeline.fork_server.client import run_forked; run_forked({long!r}, 1)"
+    asks = "from linepose.pipeline.fork_server.client import run_forked; from pathlib import Path; "
+    asks += f"run_forked({long!r}, 'adjust', Path({str(tmp_path / 'log')!r}), 1)"
     client = subprocess.Popen([sys.executable, "-c", asks])
     until(lambda: job.exists() and job.read_text() != "")
     assert is_alive(int(job.read_text()))
