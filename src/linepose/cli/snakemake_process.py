@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import termios
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -16,6 +17,7 @@ BY_KEYBOARD: Final = 128 + 2
 """Exit code of a run that was ended by the keyboard, as shells tell of a process that SIGINT has ended."""
 
 _PATIENCE_S: Final = 10.0
+_ROWS_AND_COLUMNS: Final = (24, 64)  # beside the stages at work on a line of 80
 _BAR: Final = re.compile(r"\d+%\||\d+it ")  # of tqdm
 
 
@@ -38,7 +40,7 @@ def follow_snakemake(
     and not kept.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
-    source, sink = os.pipe() if hear_bar is None else os.openpty()
+    source, sink = os.pipe() if hear_bar is None else _terminal()
     try:
         child = _start(snakefile, root, ["--nocolor", *arguments], sink)
     finally:
@@ -61,6 +63,13 @@ def files_of_workflow(snakefile: Path, root: Path, arguments: Sequence[str]) -> 
     summary = [*_command(snakefile, root), *arguments, "--summary"]
     done = subprocess.run(summary, capture_output=True, text=True, check=False)
     return {line.split("\t")[0] for line in done.stdout.splitlines()} if done.returncode == 0 else set()
+
+
+def _terminal() -> tuple[int, int]:
+    """Both ends of a pseudo-terminal with a size: in one without, tqdm draws no bar."""
+    source, sink = os.openpty()
+    termios.tcsetwinsize(sink, _ROWS_AND_COLUMNS)
+    return source, sink
 
 
 class _Source:

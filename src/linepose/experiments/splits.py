@@ -22,7 +22,7 @@ from linepose.pipeline.batches import batch_ranges
 from linepose.tables import whole_numbers
 
 _logger = logging.getLogger(__name__)
-_BATCH: Final = 10
+_BATCH: Final = 2  # a split may take half a minute: progress is told, and cores are busy, to the end
 
 SPLITS: Final = pa.schema([*whole_numbers("split"), *estimate_fields("_1"), *estimate_fields("_2"), *AGREEMENT])
 

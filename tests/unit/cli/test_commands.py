@@ -26,6 +26,8 @@ GIVEN = [
     *("--position-m", "0.2", "0", "-0.8", "--euler-deg", "-56", "0", "-90"),
 ]
 
+HYSPEX = "1 151.0 -33.0 42.0 5.0 -10.0 30.0 252818.25\n2 151.0 -33.0 42.0 5.0 -10.0 30.0 252818.35\n"
+
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
@@ -68,6 +70,7 @@ def test_new_makes_a_project_and_a_platform_that_can_be_read(here):
     assert platform.camera.principal_point_px == 323.5
     assert platform.hand_measured.euler_deg == (-56.0, 0.0, -90.0)
     assert platform.source.dataset == "mine"
+    assert platform.experiments == {"basin": None, "repeatability": {"n_splits": 20}}
     assert yaml.safe_load((here / "config" / "config.yaml").read_text())["platforms"] == ["mine"]
     assert "linepose check mine" in result.stdout
 

@@ -28,6 +28,14 @@ def child(monkeypatch, tmp_path):
     return follow
 
 
+WITH_BAR = """
+import sys
+from tqdm import tqdm
+for step in tqdm(range(2), disable=None, mininterval=0):
+    pass
+"""
+
+
 def test_messages_are_heard_and_kept(child, tmp_path):
     heard = []
     assert child(heard.append) == 3
@@ -50,3 +58,12 @@ def test_a_run_that_the_keyboard_ends_is_followed_to_its_end(child, tmp_path):
 
     assert child(hear) == BY_KEYBOARD
     assert (tmp_path / "logs" / "run.log").read_text().splitlines()[-1] == "last words"
+
+
+def test_a_job_finds_a_terminal_in_which_its_bar_has_room(child, monkeypatch):
+    monkeypatch.setattr(snakemake_process, "_command", lambda *_: [sys.executable, "-c", WITH_BAR])
+    heard, bars = [], []
+    assert child(heard.append, bars.append) == 0
+    assert any("1/2" in bar for bar in bars)
+    assert max(map(len, bars)) < 80
+    assert heard == []
