@@ -7,6 +7,7 @@ import subprocess
 import sys
 import termios
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Final
@@ -77,19 +78,28 @@ class _Source:
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
+        self._waiting: deque[bytes] = deque()
+        self._rest = b""
 
     def close(self) -> None:
         os.close(self._descriptor)
 
     def pieces(self) -> Iterator[str]:
-        rest = b""
-        while chunk := self._read():
-            *pieces, rest = re.split(rb"[\r\n]+", rest + chunk)
+        """Every piece that nobody has taken yet, also where who took the last was interrupted."""
+        while self._waiting or self._wait():
+            yield self._waiting.popleft().decode(errors="replace")
+
+    def _wait(self) -> bool:
+        """Wait for a piece; whether there is one, or the other end is closed."""
+        while not self._waiting and (chunk := self._read()):
+            *pieces, rest = re.split(rb"[\r\n]+", self._rest + chunk)
             if _BAR.search(rest.decode(errors="replace")):  # its carriage return comes with the next one
                 pieces, rest = [*pieces, rest], b""
-            yield from (piece.decode(errors="replace") for piece in pieces if piece)
-        if rest:
-            yield rest.decode(errors="replace")
+            self._waiting.extend(piece for piece in pieces if piece)
+            self._rest = rest
+        if not self._waiting and self._rest:
+            self._waiting, self._rest = deque([self._rest]), b""
+        return bool(self._waiting)
 
     def _read(self) -> bytes:
         try:

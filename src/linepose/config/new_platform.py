@@ -255,8 +255,8 @@ def _experiments() -> list[str]:
     return [
         "experiments: # what else is worked out from the accepted observations; null leaves one out",
         "  basin: null # how wrong the hand measurement may be: takes minutes to hours; remove this line to run it",
-        "  # how far the poses of random halves of the observations lie apart, and so what the sigmas are worth: the stage",
-        "  # `splits`, some seconds a split on one core; the more splits the finer (docs/configuration.md)",
+        "  # how far the poses of random halves of the observations lie apart, and so what the sigmas are worth:",
+        "  # the stage `splits`, some seconds a split on one core; more are finer (docs/configuration.md)",
         f"  repeatability: {{n_splits: {_FEW_SPLITS}}}",
     ]
 
