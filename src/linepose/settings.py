@@ -8,7 +8,7 @@ import difflib
 import inspect
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Self, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Final, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, model_validator
 from pydantic.fields import FieldInfo
@@ -21,6 +21,24 @@ if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
 else:
     ModelMetaclass = type(BaseModel)
+
+
+class SettingsError(ValueError):
+    """What a validator of a whole section finds: told at it, or at one of its keys, without what else is there.
+
+    Parameters
+    ----------
+    found, expected : str
+        What stands in the section that does not go together, and what would.
+    remedy : str
+        What to do, as an imperative.
+    key : str
+        Where in the section, dots between keys; the section itself if empty.
+    """
+
+    def __init__(self, found: str, expected: str, remedy: str, key: str = "") -> None:
+        self.found, self.expected, self.remedy, self.key = found, expected, remedy, key
+        super().__init__(f"found {found}, expected {expected}; {remedy}")
 
 
 class _FaultsInOneLine(ModelMetaclass):
@@ -116,6 +134,8 @@ def _kind_of(field: FieldInfo) -> str:
     return f"{name}, default {type(default).__name__ + '()' if isinstance(default, BaseModel) else repr(default)}"
 
 
+_MOST_SHOWN: Final = 12  # values of a list
+
 Model = TypeVar("Model", bound=Settings)
 
 
@@ -159,8 +179,21 @@ def _one_line(model: type[Settings], fault: ErrorDetails, place: str) -> InputEr
     if fault["type"] == "missing":
         return InputError(where, "nothing", "a value", "add it")
     if fault["type"] == "model_type":
-        return InputError(where, quoted(fault["input"]), "keys and values", "write `key: value` lines below it")
-    return InputError(where, quoted(fault["input"]), _expected(fault["msg"]), "correct the value")
+        return InputError(where, _shown(fault["input"]), "keys and values", "write `key: value` lines below it")
+    told = fault.get("ctx", {}).get("error")
+    if isinstance(told, SettingsError):
+        where = f"{place}: {'.'.join([*keys, told.key] if told.key else keys) or 'top level'}"
+        return InputError(where, told.found, told.expected, told.remedy)
+    return InputError(where, _shown(fault["input"]), _expected(fault["msg"]), "correct the value")
+
+
+def _shown(value: Any) -> str:
+    """A value as a message shows it: of a section its keys, of a long list how many it has."""
+    if isinstance(value, Mapping):
+        return f"the keys {', '.join(map(str, value))}" if value else "no keys"
+    if isinstance(value, list | tuple) and len(value) > _MOST_SHOWN:
+        return f"{len(value)} values"
+    return quoted(value)
 
 
 def _expected(message: str) -> str:

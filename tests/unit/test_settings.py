@@ -1,13 +1,15 @@
+import ast
 import doctest
+from pathlib import Path
 from typing import Annotated, Literal
 
 import pytest
-from pydantic import Field, PositiveInt
+from pydantic import Field, PositiveInt, model_validator
 
 import linepose
 from linepose.errors import InputError
 from linepose.estimation.sampling import SamplingSettings
-from linepose.settings import Settings, validated
+from linepose.settings import Settings, SettingsError, validated
 
 
 class Lens(Settings):
@@ -25,8 +27,24 @@ class ByNumber(Settings):
     value: int = 0
 
 
+class Pair(Settings):
+    first: float = 0.0
+    second: tuple[float, ...] = (1.0,)
+
+    @model_validator(mode="after")
+    def _rises(self):
+        if self.first >= self.second[0]:
+            raise SettingsError("second below first", "first below second", "exchange them")
+        if self.first < 0:
+            raise SettingsError(f"{self.first:g}", "no debts", "raise it", "first")
+        if len(self.second) > 30:
+            raise ValueError("few")
+        return self
+
+
 class Whole(Settings):
     lens: Lens
+    pair: Pair = Pair()
     count: PositiveInt = 1
     corner: tuple[float, float] = (0.0, 0.0)
     names: list[str] = Field(default=["a"], min_length=1)
@@ -62,12 +80,12 @@ def test_models_do_not_change():
     [
         (
             GOOD | {"cuont": 3},
-            "s.yaml: cuont: found an unknown key, expected one of lens, count, corner, names, source; "
+            "s.yaml: cuont: found an unknown key, expected one of lens, pair, count, corner, names, source; "
             "did you mean count?",
         ),
         (
             GOOD | {"zebra": 3},
-            "s.yaml: zebra: found an unknown key, expected one of lens, count, corner, names, source; remove it",
+            "s.yaml: zebra: found an unknown key, expected one of lens, pair, count, corner, names, source; remove it",
         ),
         (
             {"lens": {"focal_length_m": 0.008, "k_1": 0.1}},
@@ -113,6 +131,34 @@ def test_models_do_not_change():
 )
 def test_fault_is_told_in_one_line(values, message):
     assert message_of(values) == message
+
+
+@pytest.mark.parametrize(
+    ("pair", "message"),
+    [
+        ({"first": 2.0}, "s.yaml: pair: found second below first, expected first below second; exchange them"),
+        ({"first": -2.0}, "s.yaml: pair.first: found -2, expected no debts; raise it"),
+        ({"second": [1.5] * 40}, "s.yaml: pair: found the keys second, expected few; correct the value"),
+        ({"first": [1.5] * 40}, "s.yaml: pair.first: found 40 values, expected a valid number; correct the value"),
+    ],
+)
+def test_fault_of_a_section_does_not_tell_all_that_stands_in_it(pair, message):
+    assert message_of(GOOD | {"pair": pair}) == message
+
+
+def test_every_check_of_a_whole_section_tells_what_it_found_and_what_to_do():
+    unclear = []
+    for path in sorted(Path(linepose.__file__).parent.rglob("*.py")):
+        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(function, ast.FunctionDef) and "model_validator" in map(name_of, function.decorator_list):
+                raised = {name_of(one.exc) for one in ast.walk(function) if isinstance(one, ast.Raise)}
+                unclear += [f"{path.name}: {function.name}"] if "ValueError" in raised else []
+    assert unclear == []
+
+
+def name_of(node):
+    """The name of what a call or a decorator calls."""
+    return ast.unparse(node.func if isinstance(node, ast.Call) else node)
 
 
 def test_unknown_key_of_one_kind_among_several_is_refused():

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, noise_model
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 from linepose.simulation.noise_levels import NoiseLevels
 
 RegimeName = Annotated[str, Field(pattern="^[A-Za-z0-9-]+$")]
@@ -27,7 +27,8 @@ class RegimeSection(NoiseLevels):
     def _prior_counts(self) -> Self:
         without = [name for name in self.noise_models if noise_model(name).removes_outliers]
         if self.hand_measured_prior and without:
-            raise ValueError(f"hand_measured_prior does not count under {', '.join(without)}; leave that out")
+            found = f"hand_measured_prior with noise_models {', '.join(without)}"
+            raise SettingsError(found, "noise models under which it counts", "leave one of them out")
         return self
 
 
@@ -51,5 +52,5 @@ class CoverageSection(Settings):
             unknown = [name for name in regimes if name not in self.regimes]
             if unknown or not regimes or pool in self.regimes:
                 found = ", ".join(unknown) if unknown else "no regime" if not regimes else "the name of a regime"
-                raise ValueError(f"pools.{pool}: found {found}, expected names of coverage.regimes; correct it")
+                raise SettingsError(found, "names of coverage.regimes", "correct it", f"pools.{pool}")
         return self

@@ -4,7 +4,7 @@ from typing import Final, Literal
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt, field_validator, model_validator
 
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 
 MAP_RESULTS: Final = ("map_budget", "map_scans", "strip_patches", "strip_fit")
 """Names of the tables that the workflow makes of the maps of a platform's scans."""
@@ -66,7 +66,10 @@ class MapSection(Settings):
     def _has_its_ground(self) -> "MapSection":
         for kind, key, value in (("height", "height_m", self.height_m), ("dem", "dem", self.dem)):
             if (self.ground == kind) != (value is not None):
-                raise ValueError(f"{key} with `ground: {kind}`, and without it none")
+                found = f"`ground: {self.ground}` {'without' if value is None else 'with'} {key}"
+                remedy = f"add {key}" if value is None else f"leave {key} out, or write `ground: {kind}`"
+                raise SettingsError(found, f"{key} with `ground: {kind}`, and without it none", remedy)
         if self.ground == "points" and self.height_offset_m:
-            raise ValueError("no height_offset_m with `ground: points`, whose heights are the positions' own")
+            expected = "none with `ground: points`, whose heights are the positions' own"
+            raise SettingsError(f"{self.height_offset_m:g}", expected, "leave it out", "height_offset_m")
         return self

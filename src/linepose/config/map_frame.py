@@ -2,7 +2,7 @@
 
 from pydantic import Field, model_validator
 
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 
 
 class MapFrameSection(Settings):
@@ -21,5 +21,6 @@ class MapFrameSection(Settings):
     @model_validator(mode="after")
     def _one_of_two(self) -> "MapFrameSection":
         if (self.crs is None) == (self.origin is None):
-            raise ValueError("either crs or origin")
+            found = "neither crs nor origin" if self.crs is None else "crs and origin"
+            raise SettingsError(found, "one of them", "give one alone")
         return self

@@ -29,7 +29,7 @@ from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, 
 from linepose.geometry.camera import Camera
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.source import LabelledViewsSection, ScansSection
-from linepose.settings import Settings, faults_of, validated
+from linepose.settings import Settings, SettingsError, faults_of, validated
 from linepose.simulation.flight_section import FlightSection
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
 from linepose.simulation.true_camera import TrueCamera
@@ -141,14 +141,19 @@ class Platform(Settings):
 
     @model_validator(mode="after")
     def _has_one_origin(self) -> "Platform":
-        if sum(one is not None for one in (self.simulation, self.flight, self.source.dataset)) != 1:
-            raise ValueError("either source.dataset, or a simulation or flight with a source of kind scans")
+        origins = {"source.dataset": self.source.dataset, "simulation": self.simulation, "flight": self.flight}
+        if len(given := [name for name, one in origins.items() if one is not None]) != 1:
+            expected = "either source.dataset, or a simulation or flight with a source of kind scans"
+            if not given:
+                raise SettingsError("neither source.dataset nor a simulation or flight", expected, "give one of them")
+            raise SettingsError(" and ".join(given), expected, "leave out all but one")
         return self
 
     @model_validator(mode="after")
     def _has_scans_to_map(self) -> "Platform":
         if self.map is not None and not isinstance(self.source, ScansSection):
-            raise ValueError("source.kind scans with map: labelled views have no scans to map")
+            found = f"map with source.kind {self.source.kind}"
+            raise SettingsError(found, "source.kind scans: labelled views have no scans to map", "leave map out")
         return self
 
     @model_validator(mode="after")
@@ -158,7 +163,8 @@ class Platform(Settings):
             return self
         ground = None if self.points is None else self.points.ground
         if source.matching.ground_height_m is None and ground is None:
-            raise ValueError("source.matching.ground_height_m, or points.ground, with source.points matching")
+            found, expected = "source.points matching alone", "source.matching.ground_height_m, or points.ground"
+            raise SettingsError(found, expected, "add one of them")
         return self
 
     @property
@@ -173,9 +179,11 @@ class Platform(Settings):
         if not (isinstance(self.target, GridSection) and self.target.known):
             return self
         if noise_model(self.noise_model).removes_outliers:
-            raise ValueError(f"noise_model adjustment with target.known: {self.noise_model} has no use for it")
+            found = f"target.known with noise_model {self.noise_model}, which has no use for it"
+            raise SettingsError(found, "noise_model adjustment", "leave target.known out, or change noise_model")
         if isinstance(self.source, ScansSection) and self.source.points == "matching":
-            raise ValueError("source.points detection or labels with target.known: tie points lie on no target")
+            found = "target.known with source.points matching: tie points lie on no target"
+            raise SettingsError(found, "source.points detection or labels", "leave target.known out")
         return self
 
     @property
@@ -186,14 +194,16 @@ class Platform(Settings):
     @model_validator(mode="after")
     def _can_use_points(self) -> "Platform":
         if self.points is not None and noise_model(self.noise_model).removes_outliers:
-            raise ValueError(f"noise_model adjustment with points: {self.noise_model} has no use for them")
+            found = f"points with noise_model {self.noise_model}, which has no use for them"
+            raise SettingsError(found, "noise_model adjustment", "leave points out, or change noise_model")
         return self
 
     @model_validator(mode="after")
     def _can_be_detected(self) -> "Platform":
         detected = isinstance(self.source, ScansSection) and self.source.points == "detection"
         if detected and self.target.artwork() is None:
-            raise ValueError(f"source.points: labels with target.kind {self.target.kind}, which has no pattern to find")
+            found = f"source.points: detection with target.kind {self.target.kind}, which has no pattern to find"
+            raise SettingsError(found, "source.points: labels", "label the points by hand, or name the target's kind")
         return self
 
     @model_validator(mode="after")
@@ -201,17 +211,18 @@ class Platform(Settings):
         if not noise_model(self.noise_model).removes_outliers:
             return self
         if not self.camera.lens.is_straight:
-            raise ValueError(
-                f"noise_model adjustment with a line that is tilted or bent: {self.noise_model} takes it for straight"
-            )
+            found = f"a line that is tilted or bent with noise_model {self.noise_model}, which takes it for straight"
+            raise SettingsError(found, "noise_model adjustment", "change noise_model, or the keys of camera")
         if others := [name for name in self.camera.uncertain_coefficients if name not in ("k1", "k2")]:
-            raise ValueError(f"noise_model adjustment with sigmas of {', '.join(others)}: {self.noise_model} has none")
+            found = f"camera.sigmas of {', '.join(others)} with noise_model {self.noise_model}, which has none"
+            raise SettingsError(found, "noise_model adjustment", "change noise_model, or leave them out")
         return self
 
     @model_validator(mode="after")
     def _is_simulated_where_it_has_a_truth(self) -> "Platform":
         if self.true_camera is not None and self.simulation is None and self.flight is None:
-            raise ValueError("a simulation or a flight with true_camera")
+            expected = "a simulation or a flight with true_camera"
+            raise SettingsError("true_camera of a platform that is not simulated", expected, "leave true_camera out")
         return self
 
     def intrinsics(self) -> Camera:

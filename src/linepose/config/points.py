@@ -4,7 +4,7 @@ from typing import Self
 
 from pydantic import Field, PositiveFloat, model_validator
 
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 
 
 class GroundSection(Settings):
@@ -29,7 +29,8 @@ class GroundSection(Settings):
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
         if (self.height_m is None) == (self.dem is None):
-            raise ValueError("either height_m or dem")
+            found = "neither height_m nor dem" if self.height_m is None else "height_m and dem"
+            raise SettingsError(found, "one of them", "give one alone")
         return self
 
 

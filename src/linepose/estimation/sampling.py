@@ -9,7 +9,7 @@ from pydantic import Field, PositiveFloat, model_validator
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 
 if TYPE_CHECKING:  # configuration has these settings and must be read quickly: what samples is imported late
     import emcee
@@ -43,7 +43,8 @@ class SamplingSettings(Settings):
     def _fits_into_memory(self) -> Self:
         samples = self.n_walkers * max(self.n_steps, self.n_burn_in)
         if samples > _MOST_SAMPLES:
-            raise ValueError(f"at most {_MOST_SAMPLES} samples, n_walkers times n_steps, not {samples}")
+            expected = f"at most {_MOST_SAMPLES} samples, n_walkers times n_steps"
+            raise SettingsError(f"{samples}", expected, "lower one of them")
         return self
 
 

@@ -20,7 +20,7 @@ from linepose.experiments.estimate import estimate_fields, estimate_row, observa
 from linepose.experiments.experiment import Experiment, Section
 from linepose.experiments.inputs import Inputs
 from linepose.experiments.subsets import SubsetSettings, chosen_subsets
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 from linepose.tables import texts
 
 _logger = logging.getLogger(__name__)
@@ -39,7 +39,8 @@ class RepeatabilitySettings(Settings):
     @model_validator(mode="after")
     def _both_or_none(self) -> Self:
         if (self.first is None) != (self.second is None):
-            raise ValueError("repeatability needs both first and second, or neither")
+            given, lacks = ("first", "second") if self.second is None else ("second", "first")
+            raise SettingsError(f"{given} without {lacks}", "both, or neither", f"add {lacks}")
         return self
 
 

@@ -16,7 +16,7 @@ from linepose.experiments.accepted import Accepted
 from linepose.experiments.estimate import estimate_fields, estimate_row, observation_list
 from linepose.experiments.experiment import Experiment, Section
 from linepose.experiments.inputs import Inputs, log_rows
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 from linepose.survey.body_angles import BODY_ANGLES, body_angles_rad
 from linepose.survey.observations import Survey
 from linepose.tables import texts
@@ -47,7 +47,8 @@ class SubsetSettings(Settings):
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
         if bool(self.observations) == bool(self.rules):
-            raise ValueError("a subset needs either observations or rules")
+            found = "observations and rules" if self.rules else "neither observations nor rules"
+            raise SettingsError(found, "one of them", "give one alone")
         return self
 
 

@@ -16,7 +16,7 @@ from linepose.arrays import Floats
 from linepose.geometry import lens as lenses
 from linepose.geometry.lens import COEFFICIENTS, Lens
 from linepose.geometry.view_angles import ViewAngles, knots
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 
 _PITCH_M: Final = 1e-5  # where none is given: focal length over pitch is all that counts
 _FOCAL_SHARE: Final = 0.01  # sigma of a focal length that is told by angles
@@ -59,7 +59,7 @@ class CameraSigmas(Settings):
     @model_validator(mode="after")
     def _has_one_of_the_scale(self) -> Self:
         if self.field_of_view_deg is not None and "focal_length_m" in self.model_fields_set:
-            raise ValueError("one of focal_length_m and field_of_view_deg")
+            raise _twice("focal_length_m", "field_of_view_deg")
         return self
 
 
@@ -120,7 +120,9 @@ class Camera(Settings):
     def _sees_the_whole_line(self) -> Self:
         table = self.view_angles
         if table is not None and not (table.pixel[0] <= 0 and table.pixel[-1] >= self.n_pixels - 1):
-            raise ValueError(f"view_angles from pixel 0 to {self.n_pixels - 1}, as n_pixels has them")
+            found = f"view_angles from pixel {table.pixel[0]:g} to {table.pixel[-1]:g}"
+            expected = f"from pixel 0 to {self.n_pixels - 1}, as n_pixels has them"
+            raise SettingsError(found, expected, "complete the table, or correct n_pixels")
         return self
 
     @property
@@ -155,17 +157,22 @@ class Camera(Settings):
         )
 
 
+def _twice(first: str, second: str) -> SettingsError:
+    return SettingsError(f"{first} and {second}", "one of them", f"leave out {first} or {second}")
+
+
 def _in_metres(values: dict[str, Any]) -> dict[str, Any]:
     """A camera's values with the focal length that its field of view, or its table, tells."""
     by_angle = values.pop("field_of_view_deg", None)
     table = values.get("view_angles")
     if by_angle is not None and "focal_length_m" in values:
-        raise ValueError("one of focal_length_m and field_of_view_deg")
+        raise _twice("focal_length_m", "field_of_view_deg")
     if by_angle is not None and table is not None:
-        raise ValueError("one of field_of_view_deg and view_angles")
+        raise _twice("field_of_view_deg", "view_angles")
     is_told = "focal_length_m" not in values and (by_angle is not None or table is not None)
     if is_told:
         values = {"pixel_pitch_m": _PITCH_M, "focal_length_m": 1.0} | values
+        _check_sigmas_of_angles(values.get("sigmas"), "field_of_view_deg" if table is None else "view_angles")
     try:
         if by_angle is not None and 0 < float(by_angle) < 180 and not isinstance(by_angle, bool):
             half_px = int(values["n_pixels"]) / 2
@@ -181,13 +188,23 @@ def _in_metres(values: dict[str, Any]) -> dict[str, Any]:
         values["sigmas"] = _sigmas_in_metres(values, is_told)
     except (TypeError, ValueError, KeyError):  # of another value, whose fault is told
         pass
-    return values
+    return {"principal_point_px": 0.0} | values if table is not None else values
+
+
+def _check_sigmas_of_angles(sigmas: Any, told_by: str) -> None:
+    """Raise SettingsError for a sigma in metres, as a file has it, of a focal length that is none in metres."""
+    given = sigmas if isinstance(sigmas, Mapping) else {}
+    if given.get("focal_length_m") is not None and given.get("field_of_view_deg") is None:
+        found = f"a sigma in metres of a camera that is told by {told_by}"
+        remedy = f"leave it out, for {100 * _FOCAL_SHARE:g} % of the focal length, or give sigmas.field_of_view_deg"
+        raise SettingsError(found, "one of its angle (deg), or none", remedy, "sigmas.focal_length_m")
 
 
 def _sigmas_in_metres(values: dict[str, Any], is_told: bool) -> Any:
     """The sigmas with that of the focal length; as they are where they tell it."""
     given = values.get("sigmas") or {}
     sigmas = dict(given if isinstance(given, Mapping) else given.model_dump(exclude_unset=True))
+    sigmas = {name: one for name, one in sigmas.items() if one is not None or name != "focal_length_m"}
     by_angle = sigmas.pop("field_of_view_deg", None)
     if by_angle is not None and "focal_length_m" in sigmas:
         return given

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from linepose.arrays import Floats
 from linepose.geometry.lens import interpolated, monotone_slopes
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 
 _Angle = Annotated[float, Field(gt=-89.0, lt=89.0)]
 FEWEST: Final = 4
@@ -27,14 +27,20 @@ class ViewAngles(Settings):
 
     @model_validator(mode="after")
     def _is_a_table(self) -> "ViewAngles":
-        lengths = {len(self.pixel), len(self.across_deg), len(self.along_deg or self.pixel)}
-        if len(lengths) > 1:
-            raise ValueError("as many angles as pixels")
+        n_angles = {name: len(getattr(self, name)) for name in ("across_deg", "along_deg")}
+        for name, count in n_angles.items():
+            if count != len(self.pixel) and (count or name == "across_deg"):
+                expected = f"{len(self.pixel)}, as many angles as pixels"
+                raise SettingsError(f"{count} values", expected, "give one for each pixel", name)
         if (fallen := np.flatnonzero(np.diff(self.pixel) <= 0)).size:
-            raise ValueError(f"pixels that rise from row to row, as they do not after {self.pixel[fallen[0]]:g}")
-        if (fallen := np.flatnonzero(np.diff(self.across_deg) <= 0)).size:
-            where = f"as it does not after pixel {self.pixel[fallen[0]]:g} (if it falls everywhere, turn all signs)"
-            raise ValueError(f"across_deg that rises from pixel to pixel, {where}")
+            found = f"{self.pixel[fallen[0] + 1]:g} after {self.pixel[fallen[0]]:g}"
+            raise SettingsError(found, "pixels that rise from row to row", "sort the rows", "pixel")
+        steps = np.diff(self.across_deg)
+        if (fallen := np.flatnonzero(steps <= 0)).size:
+            at = fallen[0]
+            found = f"{self.across_deg[at + 1]:g} after {self.across_deg[at]:g}, at pixel {self.pixel[at + 1]:g}"
+            remedy = "turn all signs" if np.all(steps < 0) else "correct it"
+            raise SettingsError(found, "across_deg that rises from pixel to pixel", remedy, "across_deg")
         return self
 
     @property

@@ -9,7 +9,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
-from linepose.settings import Settings, validated
+from linepose.settings import Settings, SettingsError, validated
 
 NumberSetName = Literal["ladybird", "ladybird_attitude", "ladybird_simulated", "shrimp_simulated"]
 PLACE = "config/paper/regression.yaml"
@@ -55,7 +55,8 @@ class Declarations(Settings):
         names = [name for deviation in self.deviations for name in deviation.numbers]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise ValueError(f"one deviation a number, not two for {twice[0]}")
+            found = f"{names.count(twice[0])} deviations for {twice[0]}"
+            raise SettingsError(found, "one deviation a number", "leave out all but one")
         return self
 
     def tolerance_of(self, quantity: str) -> Tolerance:

@@ -4,7 +4,7 @@ from typing import Self
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 
 
 class NoiseLevels(Settings):
@@ -33,5 +33,5 @@ class NoiseLevels(Settings):
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
         if self.platform_error and (self.shared_level or self.white_level or self.correlated_level):
-            raise ValueError("levels, or platform_error, not both")
+            raise SettingsError("levels and platform_error", "one of them", "leave one out")
         return self

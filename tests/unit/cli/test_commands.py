@@ -236,7 +236,7 @@ def test_new_takes_a_target_as_it_was_printed_or_a_kind(here, platforms_folder):
     )
     file = here / "config" / "platforms" / "stones.yaml"
     file.write_text(file.read_text().replace("points: labels", "points: detection"))
-    with pytest.raises(InputError, match=r"source\.points: labels with target\.kind points"):
+    with pytest.raises(InputError, match=r"source\.points: detection with target\.kind points"):
         load_platform(file.parent, "stones")
 
 

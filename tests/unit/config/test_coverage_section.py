@@ -14,7 +14,7 @@ def test_adjustment_alone_estimates_unless_told_otherwise():
 
 def test_hand_measurement_that_would_not_count_is_told():
     regime = {"hand_measured_prior": True, "noise_models": ["adjustment", "published"]}
-    with pytest.raises(InputError, match="hand_measured_prior does not count under published"):
+    with pytest.raises(InputError, match="hand_measured_prior with noise_models published"):
         CoverageSection(regimes={"white": regime})
 
 

@@ -53,7 +53,7 @@ def test_columns_are_found_by_name_and_comments_passed_over(written):
         (ROWS + "5,3.0\n", {}, "line 6: found 2 cells, expected 3"),
         (ROWS + "5,3.0,x\n", {}, "line 6, along_deg: found 'x', expected a number"),
         (ROWS.replace("0.5", "-1.0"), {}, "across_deg that rises from pixel to pixel"),
-        (ROWS, {"n_pixels": 5}, "view_angles from pixel 0 to 4"),
+        (ROWS, {"n_pixels": 5}, "from pixel 0 to 3, expected from pixel 0 to 4"),
     ],
 )
 def test_what_is_no_table_is_told_in_one_line(written, rows, camera, found):
@@ -77,7 +77,7 @@ def test_the_paper_s_models_have_no_sigmas_of_other_coefficients(written):
     text = path.read_text().replace("noise_model: adjustment", "noise_model: published")
     path.write_text(text)
     (path.parent / "angles.csv").write_text(ROWS.replace("0.1\n", "0.0\n"))
-    with pytest.raises(InputError, match="noise_model adjustment with sigmas of k3: published has none"):
+    with pytest.raises(InputError, match="sigmas of k3 with noise_model published, which has none"):
         load_platform(path.parent, "robot")
 
 
@@ -85,5 +85,5 @@ def test_the_paper_s_models_take_no_bent_line(written):
     folder = written()
     path = folder / "robot.yaml"
     path.write_text(path.read_text().replace("noise_model: adjustment", "noise_model: published"))
-    with pytest.raises(InputError, match="noise_model adjustment with a line that is tilted or bent: published"):
+    with pytest.raises(InputError, match="a line that is tilted or bent with noise_model published"):
         load_platform(folder, "robot")

@@ -47,14 +47,14 @@ def message(platform, values: dict) -> str:
         ({"basin": {"n_angle": 5}}, "did you mean n_angles?"),
         ({"basins": None}, "did you mean basin?"),
         ({"basin": 5}, "robot.yaml: experiments.basin: found 5, expected keys and values"),
-        ({"subsets": {"a": {}}}, "either observations or rules"),
+        ({"subsets": {"a": {}}}, "found neither observations nor rules"),
         (
             {"subsets": {"a": {"observations": [1], "rules": [{"angle": "roll", "count": 1}]}}},
-            "either observations or rules",
+            "found observations and rules, expected one of them",
         ),
         ({"subsets": {"a": {"rules": [{"angle": "heading", "count": 2}]}}}, "found 'heading'"),
         ({"subsets": {"a": {"rules": [{"angle": "yaw", "count": 0}]}}}, "count: found 0"),
-        ({"repeatability": {"first": {"observations": [1, 2]}}}, "both first and second"),
+        ({"repeatability": {"first": {"observations": [1, 2]}}}, "found first without second"),
     ],
 )
 def test_what_cannot_be_is_one_clear_line(scans, values, told):

@@ -12,6 +12,7 @@ from linepose.geometry.camera import (
     pixel_from_normalised,
     rays,
 )
+from linepose.settings import faults_of
 
 SIZE = {"n_pixels": 2000, "principal_point_px": 999.5}
 TABLE = {"pixel": [0, 600, 1300, 1999], "across_deg": [-20.0, -8.0, 6.0, 21.0], "along_deg": [0.1, 0.0, 0.0, 0.1]}
@@ -56,18 +57,37 @@ def test_a_camera_told_by_angles_is_read_back_as_it_is():
 @pytest.mark.parametrize(
     ("values", "found"),
     [
-        ({"field_of_view_deg": 40, "focal_length_m": 8e-3}, "expected one of focal_length_m and field_of_view_deg"),
-        ({"field_of_view_deg": 40, "view_angles": TABLE}, "expected one of field_of_view_deg and view_angles"),
+        (
+            {"field_of_view_deg": 40, "focal_length_m": 8e-3},
+            "found focal_length_m and field_of_view_deg, expected one of them",
+        ),
+        (
+            {"field_of_view_deg": 40, "view_angles": TABLE},
+            "found field_of_view_deg and view_angles, expected one of them",
+        ),
         ({"field_of_view_deg": 180}, "field_of_view_deg: found 180, expected less than 180"),
+        (
+            {"field_of_view_deg": 40, "sigmas": {"focal_length_m": 1e-4}},
+            "sigmas.focal_length_m: found a sigma in metres .* told by field_of_view_deg, expected .* for 1 % of",
+        ),
         ({"field_of_view_deg": True}, "field_of_view_deg: found True"),
         ({}, "focal_length_m: found nothing"),
-        ({"view_angles": TABLE | {"across_deg": [3.0, 2.0, 1.0, 0.0]}}, "across_deg that rises from pixel to pixel"),
+        (
+            {"view_angles": TABLE | {"across_deg": [3.0, 2.0, 1.0, 0.0]}},
+            "^Camera: view_angles.across_deg: found 2 after 3, at pixel .*rises from pixel to pixel; turn all signs$",
+        ),
         ({"view_angles": TABLE | {"pixel": [0, 600, 500, 1999]}}, "pixels that rise from row to row"),
-        ({"view_angles": TABLE | {"along_deg": [0.0]}}, "as many angles as pixels"),
-        ({"view_angles": TABLE | {"pixel": [1, 600, 1300, 1999]}}, "view_angles from pixel 0 to 1999"),
+        (
+            {"view_angles": TABLE | {"along_deg": [0.0]}},
+            "along_deg: found 1 values, expected 4, as many angles as pixels",
+        ),
+        (
+            {"view_angles": TABLE | {"pixel": [1, 600, 1300, 1999]}},
+            "from pixel 1 to 1999, expected from pixel 0 to 1999",
+        ),
         (
             {"field_of_view_deg": 40, "sigmas": {"focal_length_m": 1e-5, "field_of_view_deg": 1}},
-            "sigmas: found .*, expected one of focal_length_m and field_of_view_deg",
+            "sigmas: found focal_length_m and field_of_view_deg, expected one of them",
         ),
     ],
 )
@@ -124,3 +144,11 @@ def test_ray_of_one_pixel(camera):
     centre, direction = rays(ideal, np.eye(3), [1.0, 0.0, -0.5], yawed, [10.0, 20.0, 0.0], 420.5)
     np.testing.assert_allclose(centre, [10.0, 21.0, -0.5], atol=1e-15)
     np.testing.assert_allclose(direction, [0.0, 0.1, 1.0], atol=1e-15)
+
+
+def test_a_bad_table_of_angles_is_one_fault_and_not_the_lack_of_what_it_tells():
+    table = TABLE | {"across_deg": [0.0, 1.0, 0.5, 2.0]}
+    (fault,) = faults_of(Camera, {"view_angles": table, "n_pixels": 2000}, "mine.yaml")
+    assert str(fault).startswith("mine.yaml: view_angles.across_deg: found 0.5 after 1")
+    (fault,) = faults_of(Camera, {"view_angles": {"pixel": [0, 1], "across_deg": [0, 1]}, "n_pixels": 2}, "mine.yaml")
+    assert "view_angles.pixel" in str(fault)

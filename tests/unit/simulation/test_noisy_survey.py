@@ -92,5 +92,5 @@ def test_faulty_observations_stay_in_if_asked_for_and_the_others_are_the_same(pl
 
 
 def test_levels_and_the_platforms_own_error_exclude_each_other():
-    with pytest.raises(InputError, match="levels, or platform_error, not both"):
+    with pytest.raises(InputError, match="found levels and platform_error"):
         NoiseLevels(platform_error=True, white_level=1.0)

@@ -30,7 +30,7 @@ from linepose.inputs.navigation.table_poses import TimedLayout, euler_of, time_u
 from linepose.inputs.navigation.table_times import OF_TEXT
 from linepose.inputs.navigation.usable_rows import placed
 from linepose.inputs.patterns import Files
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 
 _ENU_SIGMAS: Final = [1, 0, 2]  # standard deviations of east, north, up in the order north, east, down
 
@@ -101,8 +101,10 @@ class TableSection(TimedLayout, GeodeticSection):
     def _has_both_sigmas(self) -> "TableSection":
         of_attitude = self.columns if self.attitude_log is None else self.attitude_log.columns
         if (self.columns.sigma_position is None) != (of_attitude.sigma_attitude is None):
-            whose = "" if self.attitude_log is None else "attitude_log."
-            raise ValueError(f"columns.sigma_position and {whose}columns.sigma_attitude, or none of them")
+            of_both = ["columns.sigma_position", "columns.sigma_attitude"]
+            of_both[1] = of_both[1] if self.attitude_log is None else f"attitude_log.{of_both[1]}"
+            given, lacks = of_both if of_attitude.sigma_attitude is None else of_both[::-1]
+            raise SettingsError(f"{given} without {lacks}", "both, or none of them", f"add {lacks}")
         return self
 
     def of_poses(self) -> list[Name]:

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, model_validator
 
 from linepose.arrays import Floats
+from linepose.settings import SettingsError
 from linepose.survey.targets.artwork import Artwork, Rectangle
 from linepose.survey.targets.base import Detail, Feature, Found, Picture, RectifiedSection, grid_points
 from linepose.survey.targets.markers import dictionary, marker, n_cells, parameters
@@ -33,9 +34,12 @@ class ApriltagsSection(RectifiedSection):
     @model_validator(mode="after")
     def _are_apart(self) -> Self:
         if self.tag_m >= self.spacing_m:
-            raise ValueError("tag_m below spacing_m")
+            found = f"tag_m {self.tag_m:g} with spacing_m {self.spacing_m:g}"
+            raise SettingsError(found, "tag_m below spacing_m", "correct one of them")
         if self.first_tag + self.rows * self.columns > _N_TAGS[self.family]:
-            raise ValueError(f"tag numbers below {_N_TAGS[self.family]}, all that family {self.family} has")
+            found = f"{self.rows} rows of {self.columns} tags from number {self.first_tag}"
+            expected = f"tag numbers below {_N_TAGS[self.family]}, all that family {self.family} has"
+            raise SettingsError(found, expected, "lower rows, columns or first_tag, or take another family")
         return self
 
     @classmethod

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from linepose.arrays import Floats
-from linepose.settings import Settings
+from linepose.settings import Settings, SettingsError
 from linepose.survey.targets.artwork import Artwork
 
 Picture = NDArray[np.uint8]  # (H, W), as seen from the board's front
@@ -72,7 +72,8 @@ class GridSection(TargetSection):
     @model_validator(mode="after")
     def _is_known_to_a_sigma(self) -> Self:
         if self.known and self.sigma_m is None:
-            raise ValueError("sigma_m with known: true")
+            expected = "how well the points' places are known (m), with `known: true`"
+            raise SettingsError("nothing", expected, "add sigma_m", "sigma_m")
         return self
 
     @classmethod

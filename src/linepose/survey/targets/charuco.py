@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from linepose.arrays import Floats
+from linepose.settings import SettingsError
 from linepose.survey.targets.artwork import Artwork, Rectangle
 from linepose.survey.targets.base import Detail, Feature, Found, Picture, RectifiedSection, grid_points
 from linepose.survey.targets.chessboard import black_squares
@@ -36,12 +37,16 @@ class CharucoSection(RectifiedSection):
     @model_validator(mode="after")
     def _can_be_found(self) -> Self:
         if min(self.rows, self.columns) < _FEWEST_SQUARES:
-            raise ValueError(f"at least {_FEWEST_SQUARES} rows and columns of squares")
+            found, expected = f"{self.rows} x {self.columns}", f"at least {_FEWEST_SQUARES} rows and columns of squares"
+            raise SettingsError(found, expected, "raise rows and columns")
         if self.marker_m >= self.square_m:
-            raise ValueError("marker_m below square_m")
+            found = f"marker_m {self.marker_m:g} with square_m {self.square_m:g}"
+            raise SettingsError(found, "marker_m below square_m", "correct one of them")
         known = int(self.dictionary.partition("_")[2])
         if self.rows * self.columns // 2 > known:
-            raise ValueError(f"at most {known} white squares, or a larger dictionary")
+            found = f"{self.rows} x {self.columns} squares with dictionary {self.dictionary}"
+            expected = f"at most {known} white squares, or a larger dictionary"
+            raise SettingsError(found, expected, "lower rows or columns, or take another dictionary")
         return self
 
     @classmethod

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from linepose.arrays import Floats
+from linepose.settings import SettingsError
 from linepose.survey.targets.artwork import Artwork, Rectangle
 from linepose.survey.targets.base import Detail, Feature, Found, Picture, RectifiedSection, grid_points, turns_of_grid
 
@@ -28,7 +29,8 @@ class ChessboardSection(RectifiedSection):
     @model_validator(mode="after")
     def _can_be_found(self) -> Self:
         if min(self.rows, self.columns) < _FEWEST_SQUARES:
-            raise ValueError(f"at least {_FEWEST_SQUARES} rows and columns of squares")
+            found, expected = f"{self.rows} x {self.columns}", f"at least {_FEWEST_SQUARES} rows and columns of squares"
+            raise SettingsError(found, expected, "raise rows and columns")
         return self
 
     @classmethod

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from linepose.arrays import Floats
+from linepose.settings import SettingsError
 from linepose.survey.targets.artwork import Artwork, Disc
 from linepose.survey.targets.base import Detail, Feature, Found, Picture, RectifiedSection, grid_points, turns_of_grid
 
@@ -32,9 +33,11 @@ class DotsSection(RectifiedSection):
     @model_validator(mode="after")
     def _are_apart(self) -> Self:
         if self.diameter_m >= self.spacing_m:
-            raise ValueError("diameter_m below spacing_m")
+            found = f"diameter_m {self.diameter_m:g} with spacing_m {self.spacing_m:g}"
+            raise SettingsError(found, "diameter_m below spacing_m", "correct one of them")
         if min(self.rows, self.columns) < _MINIMUM:
-            raise ValueError(f"at least {_MINIMUM} rows and columns")
+            found = f"{self.rows} rows and {self.columns} columns"
+            raise SettingsError(found, f"at least {_MINIMUM} rows and columns", "raise them")
         return self
 
     @classmethod

@@ -5,6 +5,8 @@ from typing import Annotated, Any, Final
 
 from pydantic import BeforeValidator, Field
 
+from linepose.errors import quoted
+from linepose.settings import SettingsError
 from linepose.survey.targets.apriltags import ApriltagsSection
 from linepose.survey.targets.base import GridSection, TargetSection
 from linepose.survey.targets.charuco import CharucoSection
@@ -24,7 +26,8 @@ PRINTED: Final[dict[str, type[GridSection]]] = {
 
 def _of_a_known_kind(values: Any) -> Any:
     if isinstance(values, Mapping) and not (isinstance(values.get("kind"), str) and values["kind"] in KINDS):
-        raise ValueError(f"kind: one of {', '.join(KINDS)}")
+        found = quoted(values["kind"]) if "kind" in values else "nothing"
+        raise SettingsError(found, f"one of {', '.join(KINDS)}", "correct it", "kind")
     return values
 
 

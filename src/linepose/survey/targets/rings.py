@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from linepose.arrays import Floats
+from linepose.settings import SettingsError
 from linepose.survey import pattern
 from linepose.survey.targets.artwork import Artwork, Disc, Rectangle, Shape
 from linepose.survey.targets.base import Detail, Feature, GridSection
@@ -44,13 +45,20 @@ class RingsSection(GridSection):
     @model_validator(mode="after")
     def _can_be_told_apart(self) -> Self:
         if self.rows == self.columns:
-            raise ValueError("another number of rows than of columns, so that a mirrored scan can be told")
+            expected = "another number of rows than of columns, so that a mirrored scan can be told"
+            raise SettingsError(f"{self.rows} rows and {self.columns} columns", expected, "change one of them")
         if min(self.rows, self.columns) < 2 or self.rows * self.columns < _FEWEST_POINTS:
-            raise ValueError(f"at least two rows, two columns and {_FEWEST_POINTS} rings")
+            expected = f"at least two rows, two columns and {_FEWEST_POINTS} rings"
+            raise SettingsError(f"{self.rows} rows and {self.columns} columns", expected, "raise them")
         if not self.dot_diameter_m < self.ring_inner_diameter_m < self.ring_outer_diameter_m:
-            raise ValueError("dot_diameter_m < ring_inner_diameter_m < ring_outer_diameter_m")
+            found = f"{self.dot_diameter_m:g}, {self.ring_inner_diameter_m:g}, {self.ring_outer_diameter_m:g}"
+            expected = "dot_diameter_m < ring_inner_diameter_m < ring_outer_diameter_m"
+            raise SettingsError(found, expected, "correct one of them")
         if self.ring_outer_diameter_m >= min(self.row_spacing_m, self.column_spacing_m):
-            raise ValueError("ring_outer_diameter_m below row_spacing_m and column_spacing_m")
+            nearest = min(self.row_spacing_m, self.column_spacing_m)
+            found = f"ring_outer_diameter_m {self.ring_outer_diameter_m:g} with rings {nearest:g} m apart"
+            expected = "ring_outer_diameter_m below row_spacing_m and column_spacing_m"
+            raise SettingsError(found, expected, "correct one of them")
         return self
 
     @classmethod

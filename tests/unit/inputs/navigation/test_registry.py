@@ -95,7 +95,7 @@ def test_format_that_is_brought_is_closed_too(tmp_path, installed):
         ),
         (
             {"format": "table", "file": "a", "columns": {"sigma_position": ["a", "b", "c"]}},
-            r"source.navigation: found .*expected columns.sigma_position and columns.sigma_attitude, or none",
+            r"source.navigation: found columns.sigma_position without columns.sigma_attitude, expected both",
         ),
     ],
 )
