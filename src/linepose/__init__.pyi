@@ -6,7 +6,7 @@ from .errors import LineposeError as LineposeError
 from .estimation.optimise import Search as Search
 from .estimation.sampling import SamplingSettings as SamplingSettings
 from .geometry.camera import Camera as Camera
-from .geometry.camera import CameraSigmas as CameraSigmas
+from .geometry.camera_sigmas import CameraSigmas as CameraSigmas
 from .pipeline.api import calibrate_platform as calibrate_platform
 from .pipeline.api import load_observations as load_observations
 from .pipeline.api import load_platform_file as load_platform_file

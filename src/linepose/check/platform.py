@@ -27,7 +27,7 @@ from linepose.check.scans import scan_findings
 from linepose.check.target import target_findings
 from linepose.check.told import agreeing, readers_warnings
 from linepose.check.views import view_findings
-from linepose.config.platform import Platform, load_platform, platform_faults
+from linepose.config.platform import Platform, camera_keys, load_platform, platform_faults
 from linepose.config.project import Project
 from linepose.config.study import check_study
 from linepose.config.yaml_file import read_yaml
@@ -91,7 +91,7 @@ def check_platform(platform: str, project: Path | str = ".") -> CheckReport:
         return CheckReport(platform, tuple(findings))
     study = check_study(read_yaml(root / CONFIG) | {"platforms": [platform]})
     settings = load_platform(root / study.platforms_folder, platform)
-    findings += camera_findings(settings.intrinsics())
+    findings += camera_findings(settings.intrinsics(), camera_keys(root / study.platforms_folder, platform))
     try:
         loaded = load_platform_project(platform, root, compared_platforms, offline=True)
     except InputError as fault:

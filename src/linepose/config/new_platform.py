@@ -12,7 +12,8 @@ from linepose.config.platform import NavigationSection, Platform
 from linepose.config.target_file import target_text
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT
-from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.inputs.navigation.format import NavigationFormatSection
 from linepose.inputs.navigation.registry import FORMATS
 from linepose.inputs.source import LabelledViewsSection, ScansSection

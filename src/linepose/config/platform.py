@@ -22,11 +22,12 @@ from linepose.config.map_frame import MapFrameSection
 from linepose.config.names import check_name
 from linepose.config.outline import OutlineSection
 from linepose.config.points import PointsSection
-from linepose.config.view_angles import with_view_angles
+from linepose.config.view_angles import with_named_table, with_view_angles
 from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, noise_model
 from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import ALWAYS_ESTIMATED
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, SettingsError, faults_of, validated
@@ -219,6 +220,15 @@ class Platform(Settings):
         return self
 
     @model_validator(mode="after")
+    def _has_sigmas_that_the_model_weighs(self) -> "Platform":
+        if noise_model(self.noise_model).removes_outliers:
+            return self
+        if certain := [name for name in ALWAYS_ESTIMATED if getattr(self.camera.sigmas, name) == 0]:
+            found = f"0 with noise_model {self.noise_model}, which estimates it"
+            raise SettingsError(found, "above 0", "give how well it is known", f"camera.sigmas.{certain[0]}")
+        return self
+
+    @model_validator(mode="after")
     def _is_simulated_where_it_has_a_truth(self) -> "Platform":
         if self.true_camera is not None and self.simulation is None and self.flight is None:
             expected = "a simulation or a flight with true_camera"
@@ -262,16 +272,32 @@ def load_platform(folder: Path, name: str) -> Platform:
 
     Raises InputError for a file that is missing, is not YAML, or says something that no platform has.
     """
-    return validated(Platform, _merged_values(folder, name, []), str(folder / f"{name}.yaml"))
+    return validated(Platform, _whole_values(folder, name), str(folder / f"{name}.yaml"))
 
 
 def platform_faults(folder: Path, name: str) -> list[InputError]:
     """Every fault of config/platforms/NAME.yaml; none where `load_platform` would read it."""
     try:
-        values = _merged_values(folder, name, [])
+        values = _whole_values(folder, name)
     except InputError as error:
         return [error]
     return faults_of(Platform, values, str(folder / f"{name}.yaml"))
+
+
+def camera_keys(folder: Path, name: str) -> frozenset[str]:
+    """The keys of the camera that config/platforms/NAME.yaml, or the platform that it is like, gives.
+
+    Raises InputError as `load_platform` does.
+    """
+    camera = _whole_values(folder, name)["camera"]
+    return frozenset(key for key, value in camera.items() if value is not None)
+
+
+def _whole_values(folder: Path, name: str) -> dict[str, Any]:
+    """All that a platform's file and those that it is like say, with the numbers of the camera's table."""
+    seen: list[str] = []
+    values = _merged_values(folder, name, seen)
+    return with_view_angles(values, str(folder / f"{name}.yaml"), len(seen) > 1)
 
 
 def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:
@@ -281,9 +307,10 @@ def _merged_values(folder: Path, name: str, seen: list[str]) -> dict[str, Any]:
         raise InputError(f"{path}: like", f"a circle {' -> '.join([*seen, name])}", "an end", "remove one `like`")
     if not path.is_file():
         raise _no_such_platform(path, seen)
-    values = with_view_angles(read_yaml(path), path)
+    seen.append(name)
+    values = with_named_table(read_yaml(path), path)
     parent = values.pop("like", None)
-    return values if parent is None else _overlaid(_merged_values(folder, parent, [*seen, name]), values)
+    return values if parent is None else _overlaid(_merged_values(folder, parent, seen), values)
 
 
 def _no_such_platform(path: Path, named_by: list[str]) -> InputError:

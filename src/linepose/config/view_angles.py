@@ -1,62 +1,98 @@
 """A camera's view angles, from the CSV that its platform's file names."""
 
 import csv
+import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from linepose.errors import InputError
+from linepose.geometry.view_angles import fault_of_rows, fault_of_width
+from linepose.inputs.number_files import plain_float
+from linepose.inputs.text_files import small_text
 
 _REQUIRED: Final = ("pixel", "across_deg")
 _COLUMNS: Final = (*_REQUIRED, "along_deg")
 _INSTEAD: Final = ("focal_length_m", "field_of_view_deg", "principal_point_px")
-_WHAT: Final = f"columns {', '.join(_REQUIRED)} and perhaps {_COLUMNS[2]}, by name"
+_WHAT: Final = "a CSV of view angles"
+_HEADING: Final = f"columns {', '.join(_REQUIRED)} and perhaps {_COLUMNS[2]}, by name"
 
 
-def with_view_angles(values: dict[str, Any], platform: Path) -> dict[str, Any]:
-    """A platform file's values, with the numbers of the file that `camera.view_angles` names, beside the platform's.
+def with_named_table(values: dict[str, Any], platform: Path) -> dict[str, Any]:
+    """A platform file's values, with the path of the file beside it that `camera.view_angles` names.
 
-    Raises InputError for a file that is no such table, and for keys of the camera that the table stands in for.
+    Raises InputError where the name is empty.
+    """
+    camera = values.get("camera")
+    named = camera.get("view_angles") if isinstance(camera, dict) else None
+    if not isinstance(named, str):
+        return values
+    if not named.strip():
+        raise InputError(f"{platform}: camera.view_angles", repr(named), _WHAT, "name the file, or remove the key")
+    return values | {"camera": values["camera"] | {"view_angles": platform.parent / named}}
+
+
+def with_view_angles(values: dict[str, Any], place: str, inherits: bool) -> dict[str, Any]:
+    """A platform's values with the numbers of the file whose path is `camera.view_angles`.
+
+    `inherits` says whether some of them are of another platform, by `like`. Raises InputError for a file that is no
+    table of this camera, and for keys of the camera that the table stands in for.
     """
     camera = values.get("camera")
     if not isinstance(camera, dict) or camera.get("view_angles") is None:
         return values
-    place = f"{platform}: camera"
     twice = [name for name in _INSTEAD if camera.get(name) is not None]
     if twice:
-        raise InputError(place, f"view_angles with {', '.join(twice)}", "one of them", f"leave out {', '.join(twice)}")
-    named = camera["view_angles"]
-    if not isinstance(named, str):
+        remedy = f"leave out {', '.join(twice)}" + (" (null where `like` gives it)" if inherits else "")
+        raise InputError(f"{place}: camera", f"view_angles with {', '.join(twice)}", "one of them", remedy)
+    path, n_pixels = camera["view_angles"], camera.get("n_pixels")
+    if not isinstance(path, Path):
         return values
-    return values | {"camera": camera | {"view_angles": read_view_angles(platform.parent / named)}}
+    table = read_view_angles(path, n_pixels if isinstance(n_pixels, int) and n_pixels > 0 else None)
+    return values | {"camera": camera | {"view_angles": table}}
 
 
-def read_view_angles(path: Path) -> dict[str, list[float]]:
+def read_view_angles(path: Path, n_pixels: int | None = None) -> dict[str, list[float]]:
     """Columns of a CSV: pixel, across_deg, and along_deg where it has it; lines that begin with # are passed over.
 
-    Pixels that are numbered from 1 without a gap are counted from 0. Raises InputError.
+    Pixels that are numbered from 1 without a gap are counted from 0. Raises InputError naming the line that is none of
+    such a table, also where it is not of a line of `n_pixels`.
     """
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except FileNotFoundError:
-        raise InputError(str(path), "no such file", "a CSV of view angles", "correct camera.view_angles") from None
-    except (OSError, UnicodeDecodeError):
-        raise InputError(str(path), "no text", "a CSV of view angles", "correct camera.view_angles") from None
+    lines = small_text(path, _WHAT, "camera.view_angles").splitlines()
     rows = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     heads = [one.strip() for one in next(csv.reader([rows[0][1]]))] if rows else []
     unknown = [one for one in heads if one not in _COLUMNS]
     if unknown or not set(_REQUIRED) <= set(heads) or len(set(heads)) < len(heads):
-        raise InputError(f"{path}, heading", ", ".join(heads) or "nothing", _WHAT, "name the columns")
+        raise InputError(f"{path}, heading", ", ".join(heads) or "nothing", _HEADING, "name the columns")
     table: dict[str, list[float]] = {name: [] for name in heads}
     for k, line in rows[1:]:
         cells = next(csv.reader([line]))
         if len(cells) != len(heads):
             raise InputError(f"{path}, line {k}", f"{len(cells)} cells", f"{len(heads)}, as the heading has", "mend it")
         for name, cell in zip(heads, cells, strict=True):
-            try:
-                table[name].append(float(cell))
-            except ValueError:
-                raise InputError(f"{path}, line {k}, {name}", repr(cell), "a number", "correct it") from None
+            table[name].append(_number(cell, f"{path}, line {k}, {name}"))
+    _check(table, [k for k, _ in rows[1:]], path)
     pixels = table["pixel"]
     if pixels == [float(k) for k in range(1, len(pixels) + 1)]:
         table["pixel"] = [one - 1 for one in pixels]
+    fault = None if n_pixels is None else fault_of_width(table["pixel"], n_pixels)
+    if fault is not None:
+        raise InputError(str(path), fault.found, fault.expected, fault.remedy)
     return table
+
+
+def _number(cell: str, place: str) -> float:
+    try:
+        number = plain_float(cell)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(place, repr(cell), "a number", "correct it")
+    return number
+
+
+def _check(table: Mapping[str, list[float]], lines: list[int], path: Path) -> None:
+    fault = fault_of_rows(table["pixel"], table["across_deg"], table.get("along_deg", []))
+    if fault is not None:
+        where = "" if fault.row is None else f", line {lines[fault.row]}, {fault.column}"
+        raise InputError(f"{path}{where}", fault.found, fault.expected, fault.remedy)

@@ -6,61 +6,24 @@ pixel is (x, y, 1), y being zero but for a line that is tilted or bent.
 """
 
 from collections.abc import Mapping
-from typing import Any, Final, Self
+from typing import Annotated, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+from pydantic import Field, PositiveFloat, model_validator
 
 from linepose.arrays import Floats
 from linepose.geometry import lens as lenses
-from linepose.geometry.lens import COEFFICIENTS, Lens
-from linepose.geometry.view_angles import ViewAngles, knots
+from linepose.geometry.camera_sigmas import CameraSigmas
+from linepose.geometry.focal_length import LARGEST_FIELD_DEG, SMALLEST_FIELD_DEG, in_metres
+from linepose.geometry.lens import COEFFICIENTS, LARGEST_COEFFICIENT, Lens
+from linepose.geometry.view_angles import ViewAngles, fault_of_width, knots
 from linepose.settings import Settings, SettingsError
 
-_PITCH_M: Final = 1e-5  # where none is given: focal length over pitch is all that counts
-_FOCAL_SHARE: Final = 0.01  # sigma of a focal length that is told by angles
-_ALTERNATIVES: Final = ("focal_length_m", "field_of_view_deg", "view_angles")
 _MOST_CARRIES: Final = 12  # each leaves a share of the bend that is its slope
 _SAME: Final = 1e-6  # of normalised x
 _NO_KNOTS: Final = np.empty(0)
-
-
-class CameraSigmas(Settings):
-    """One standard deviation of each camera quantity; units in the names, coefficients of the lens have none.
-
-    The adjustment estimates the principal point, the focal length, and each coefficient whose sigma is not zero.
-
-    Examples
-    --------
-    >>> import linepose
-    >>> linepose.CameraSigmas(u_px=0.3).focal_length_m
-    0.0001
-    """
-
-    u_px: PositiveFloat = Field(0.5, ge=1e-6, le=1e6, description="Of a point's position along the scan line (px).")
-    v_px: PositiveFloat = Field(0.5, ge=1e-6, le=1e6, description="Of a point's position across the scan line (px).")
-    principal_point_px: NonNegativeFloat = Field(2.0, le=1e6, description="Of the principal point (px).")
-    focal_length_m: NonNegativeFloat = Field(
-        1e-4,
-        le=1e3,
-        description="Of the focal length (m); 1 % of it where the camera is told by field_of_view_deg or view_angles.",
-    )
-    field_of_view_deg: PositiveFloat | None = Field(
-        None, lt=180, description="In place of focal_length_m: of the field of view (deg)."
-    )
-    k1: NonNegativeFloat = Field(0.0, description="Of the first radial distortion coefficient (no unit).")
-    k2: NonNegativeFloat = Field(0.0, description="Of the second radial distortion coefficient (no unit).")
-    k3: NonNegativeFloat = Field(0.0, description="Of the third radial distortion coefficient (no unit).")
-    p2: NonNegativeFloat = Field(0.0, description="Of the tangential distortion coefficient (no unit).")
-    tilt: NonNegativeFloat = Field(0.0, description="Of the line's tilt (no unit).")
-    smile: NonNegativeFloat = Field(0.0, description="Of the line's smile (no unit).")
-
-    @model_validator(mode="after")
-    def _has_one_of_the_scale(self) -> Self:
-        if self.field_of_view_deg is not None and "focal_length_m" in self.model_fields_set:
-            raise _twice("focal_length_m", "field_of_view_deg")
-        return self
+_Coefficient = Annotated[float, Field(ge=-LARGEST_COEFFICIENT, le=LARGEST_COEFFICIENT)]
 
 
 class Camera(Settings):
@@ -82,8 +45,8 @@ class Camera(Settings):
     focal_length_m: PositiveFloat = Field(description="Focal length (m); or field_of_view_deg, or view_angles.")
     field_of_view_deg: float | None = Field(
         None,
-        gt=0,
-        lt=180,
+        ge=SMALLEST_FIELD_DEG,
+        le=LARGEST_FIELD_DEG,
         description="In place of focal_length_m: angle between the outer edges of the first and last pixel, without "
         "distortion and about the line's middle (deg).",
     )
@@ -93,19 +56,25 @@ class Camera(Settings):
         "angle of each pixel (columns pixel, across_deg, and along_deg where the line is not straight), or these as "
         "lists.",
     )
-    pixel_pitch_m: PositiveFloat = Field(
-        description="Width of a pixel on the sensor (m); may be left out with field_of_view_deg or view_angles."
+    pixel_pitch_m: float = Field(
+        ge=1e-9,
+        le=0.1,
+        description="Width of a pixel on the sensor (m); may be left out with field_of_view_deg or view_angles.",
     )
     n_pixels: int = Field(gt=0, le=1_000_000, description="Pixels of a scan line.")
     principal_point_px: float = Field(
         description="Where the optical axis meets the line (px from the centre of the first pixel); or view_angles."
     )
-    k1: float = Field(0.0, description="First radial distortion coefficient (no unit).")
-    k2: float = Field(0.0, description="Second radial distortion coefficient (no unit).")
-    k3: float = Field(0.0, description="Third radial distortion coefficient (no unit).")
-    p2: float = Field(0.0, description="Tangential distortion coefficient along the line, OpenCV's p2 (no unit).")
-    tilt: float = Field(0.0, description="Slope of the line across a straight one (no unit).")
-    smile: float = Field(0.0, description="Bend of the line: y = tilt x + smile x^2 in the normalised plane (no unit).")
+    k1: _Coefficient = Field(0.0, description="First radial distortion coefficient (no unit).")
+    k2: _Coefficient = Field(0.0, description="Second radial distortion coefficient (no unit).")
+    k3: _Coefficient = Field(0.0, description="Third radial distortion coefficient (no unit).")
+    p2: _Coefficient = Field(
+        0.0, description="Tangential distortion coefficient along the line, OpenCV's p2 (no unit)."
+    )
+    tilt: _Coefficient = Field(0.0, description="Slope of the line across a straight one (no unit).")
+    smile: _Coefficient = Field(
+        0.0, description="Bend of the line: y = tilt x + smile x^2 in the normalised plane (no unit)."
+    )
     sigmas: CameraSigmas = Field(CameraSigmas(), description="One standard deviation of each.")
 
     @model_validator(mode="before")
@@ -114,15 +83,13 @@ class Camera(Settings):
         """The focal length in metres, and its sigma, of a camera that is told by angles."""
         if not isinstance(values, Mapping):
             return values
-        return _in_metres({name: one for name, one in values.items() if one is not None or name not in _ALTERNATIVES})
+        return in_metres(values)
 
     @model_validator(mode="after")
-    def _sees_the_whole_line(self) -> Self:
-        table = self.view_angles
-        if table is not None and not (table.pixel[0] <= 0 and table.pixel[-1] >= self.n_pixels - 1):
-            found = f"view_angles from pixel {table.pixel[0]:g} to {table.pixel[-1]:g}"
-            expected = f"from pixel 0 to {self.n_pixels - 1}, as n_pixels has them"
-            raise SettingsError(found, expected, "complete the table, or correct n_pixels")
+    def _sees_the_whole_line(self) -> "Camera":
+        fault = None if self.view_angles is None else fault_of_width(self.view_angles.pixel, self.n_pixels)
+        if fault is not None:
+            raise SettingsError(fault.found, fault.expected, fault.remedy, "view_angles")
         return self
 
     @property
@@ -155,68 +122,6 @@ class Camera(Settings):
             smile=-self.smile,
             view_angles=self.view_angles and self.view_angles.mirrored(self.n_pixels),
         )
-
-
-def _twice(first: str, second: str) -> SettingsError:
-    return SettingsError(f"{first} and {second}", "one of them", f"leave out {first} or {second}")
-
-
-def _in_metres(values: dict[str, Any]) -> dict[str, Any]:
-    """A camera's values with the focal length that its field of view, or its table, tells."""
-    by_angle = values.pop("field_of_view_deg", None)
-    table = values.get("view_angles")
-    if by_angle is not None and "focal_length_m" in values:
-        raise _twice("focal_length_m", "field_of_view_deg")
-    if by_angle is not None and table is not None:
-        raise _twice("field_of_view_deg", "view_angles")
-    is_told = "focal_length_m" not in values and (by_angle is not None or table is not None)
-    if is_told:
-        values = {"pixel_pitch_m": _PITCH_M, "focal_length_m": 1.0} | values
-        _check_sigmas_of_angles(values.get("sigmas"), "field_of_view_deg" if table is None else "view_angles")
-    try:
-        if by_angle is not None and 0 < float(by_angle) < 180 and not isinstance(by_angle, bool):
-            half_px = int(values["n_pixels"]) / 2
-            values["focal_length_m"] = (
-                half_px / np.tan(np.deg2rad(float(by_angle)) / 2) * float(values["pixel_pitch_m"])
-            )
-        elif by_angle is not None:
-            values["field_of_view_deg"] = by_angle  # whose fault is told
-        elif is_told:
-            table = table if isinstance(table, ViewAngles) else ViewAngles.model_validate(table)
-            values["focal_length_m"] = table.focal_length_px * float(values["pixel_pitch_m"])
-            values = {"principal_point_px": table.principal_point_px} | values
-        values["sigmas"] = _sigmas_in_metres(values, is_told)
-    except (TypeError, ValueError, KeyError):  # of another value, whose fault is told
-        pass
-    return {"principal_point_px": 0.0} | values if table is not None else values
-
-
-def _check_sigmas_of_angles(sigmas: Any, told_by: str) -> None:
-    """Raise SettingsError for a sigma in metres, as a file has it, of a focal length that is none in metres."""
-    given = sigmas if isinstance(sigmas, Mapping) else {}
-    if given.get("focal_length_m") is not None and given.get("field_of_view_deg") is None:
-        found = f"a sigma in metres of a camera that is told by {told_by}"
-        remedy = f"leave it out, for {100 * _FOCAL_SHARE:g} % of the focal length, or give sigmas.field_of_view_deg"
-        raise SettingsError(found, "one of its angle (deg), or none", remedy, "sigmas.focal_length_m")
-
-
-def _sigmas_in_metres(values: dict[str, Any], is_told: bool) -> Any:
-    """The sigmas with that of the focal length; as they are where they tell it."""
-    given = values.get("sigmas") or {}
-    sigmas = dict(given if isinstance(given, Mapping) else given.model_dump(exclude_unset=True))
-    sigmas = {name: one for name, one in sigmas.items() if one is not None or name != "focal_length_m"}
-    by_angle = sigmas.pop("field_of_view_deg", None)
-    if by_angle is not None and "focal_length_m" in sigmas:
-        return given
-    focal_px = float(values["focal_length_m"]) / float(values["pixel_pitch_m"])
-    if by_angle is not None:
-        angle = 2 * np.arctan(int(values["n_pixels"]) / 2 / focal_px)
-        sigmas["focal_length_m"] = float(values["focal_length_m"]) * np.deg2rad(float(by_angle)) / np.sin(angle)
-    elif is_told and "focal_length_m" not in sigmas:
-        sigmas["focal_length_m"] = _FOCAL_SHARE * float(values["focal_length_m"])
-    else:
-        return given
-    return sigmas
 
 
 def normalised_from_pixel(camera: Camera, u_px: ArrayLike) -> Floats:

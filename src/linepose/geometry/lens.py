@@ -24,6 +24,7 @@ from linepose.arrays import Floats
 
 COEFFICIENTS: Final = ("k1", "k2", "k3", "p2", "tilt", "smile")
 ALONG: Final = COEFFICIENTS[:4]  # those that move a direction along the line; the others bend the line
+LARGEST_COEFFICIENT: Final = 1e6
 _MOST_STEPS: Final = 50
 _SETTLED: Final = 1e-14  # of s
 

@@ -9,11 +9,11 @@ import pyarrow as pa
 
 from linepose.arrays import Floats
 from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import ALWAYS_ESTIMATED
 from linepose.geometry.lens import COEFFICIENTS
 from linepose.tables import floats, optional_floats, texts
 
-ALWAYS: Final = ("principal_point_px", "focal_length_m")
-NAMES: Final = (*ALWAYS, *COEFFICIENTS)
+NAMES: Final = (*ALWAYS_ESTIMATED, *COEFFICIENTS)
 IDENTIFIABLE_SHARE: Final = 0.5  # of the prior's sigma, below which the survey has told an intrinsic
 _COVARIANCE: Final = tuple(f"covariance_with_{name}" for name in NAMES)
 _BY: Final = tuple(

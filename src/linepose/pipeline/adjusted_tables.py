@@ -14,9 +14,10 @@ from linepose.arrays import Floats
 from linepose.estimation.adjustment_estimator import AdjustmentEstimator
 from linepose.estimation.diagnostics import split_r_hat
 from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import ALWAYS_ESTIMATED
 from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Residuals
-from linepose.pipeline.adjusted_intrinsics import ALWAYS, AdjustedIntrinsics, intrinsics_table
+from linepose.pipeline.adjusted_intrinsics import AdjustedIntrinsics, intrinsics_table
 from linepose.pipeline.adjusted_schemas import CORRECTION_COLUMNS, NORMALISED_COLUMNS, STAGE
 from linepose.pipeline.residual_tables import point_rows, residual_rows
 from linepose.pipeline.stages import LAPLACE_SIGMA_COLUMNS
@@ -108,7 +109,7 @@ def measurement_table(survey: Survey, found: Adjustment) -> pd.DataFrame:
 
 
 def _intrinsics(found: Adjustment, camera: Camera) -> AdjustedIntrinsics:
-    names = (*ALWAYS, *found.coefficients)
+    names = (*ALWAYS_ESTIMATED, *found.coefficients)
     return AdjustedIntrinsics(
         names,
         np.array([found.principal_point_px, found.focal_length_m, *found.coefficients.values()]),

@@ -7,7 +7,8 @@ import numpy as np
 
 from linepose.arrays import Floats
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.simulation.drawn_camera import drawn_camera
 from linepose.simulation.flight_layouts import CROSSED, Strip
 from linepose.simulation.navigation_error import navigation_errors

@@ -7,7 +7,8 @@ from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.adjustment.linearise import empty_linearised, linearise
 from linepose.adjustment.measurements import measurements_from_survey
 from linepose.adjustment.state import state_at
-from linepose.geometry.camera import Camera, CameraSigmas, off_line, pixel_from_normalised
+from linepose.geometry.camera import Camera, off_line, pixel_from_normalised
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.geometry.distance import difference_covariance, pose_difference
 from linepose.geometry.lens import COEFFICIENTS
 from linepose.geometry.rotations import matrix_from_euler

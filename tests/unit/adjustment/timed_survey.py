@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.geometry.rotations import matrix_from_euler, matrix_from_rotation_vector
 from linepose.survey.observations import Survey
 

@@ -1,12 +1,13 @@
 """The CSV of view angles that a platform's file names."""
 
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
-from linepose.config.platform import Platform, load_platform
+from linepose.config.platform import Platform, camera_keys, load_platform, platform_faults
 from linepose.config.view_angles import read_view_angles
 from linepose.errors import InputError
 from linepose.geometry.camera import normalised_from_pixel
@@ -14,6 +15,7 @@ from unit.made_up import PLATFORM
 
 CONFIG = Path(__file__).parents[3] / "config"
 ROWS = "pixel,across_deg,along_deg\n1,-2.0,0.1\n2,-1.0,0.0\n3,0.5,0.0\n4,2.0,0.1\n"
+FALLING = "pixel,across_deg\n0,2\n1,1\n2,-1\n3,-2\n"
 
 
 @pytest.fixture
@@ -52,13 +54,63 @@ def test_columns_are_found_by_name_and_comments_passed_over(written):
         ("", {}, "heading: found nothing"),
         (ROWS + "5,3.0\n", {}, "line 6: found 2 cells, expected 3"),
         (ROWS + "5,3.0,x\n", {}, "line 6, along_deg: found 'x', expected a number"),
-        (ROWS.replace("0.5", "-1.0"), {}, "across_deg that rises from pixel to pixel"),
-        (ROWS, {"n_pixels": 5}, "from pixel 0 to 3, expected from pixel 0 to 4"),
+        (ROWS + "5,nan,0.0\n", {}, "line 6, across_deg: found 'nan', expected a number"),
+        (
+            ROWS.replace("0.5", "-1.0"),
+            {},
+            "angles.csv, line 4, across_deg: found -1 after -1, expected angles that rise",
+        ),
+        (FALLING, {}, "line 3, across_deg: .*; turn all signs"),
+        (ROWS + "3,3.0,0.0\n", {}, "angles.csv, line 6, pixel: found pixel 3 again, .*; remove one of its rows"),
+        ("# a lens\n" + ROWS + "2.5,3,0\n", {}, "line 7, pixel: found pixel 2.5 after 4, .*; sort the rows by pixel"),
+        (ROWS.replace("2.0,0.1", "133.0,0.1"), {}, "line 2, across_deg: found -133, .*1 mrad is 0.0573 deg"),
+        (ROWS.replace("0.0\n", "90\n"), {}, "line 3, along_deg: found 90, expected angles between -89 and 89 deg"),
+        ("pixel,across_deg\n0,-1\n1,0\n2,1\n", {}, "angles.csv: found 3 rows, expected 4 rows or more"),
+        (ROWS, {"n_pixels": 5}, r"angles.csv: found 4 pixels \(0 to 3\), expected 5 pixels \(0 to 4\)"),
+        (ROWS, {"n_pixels": 3}, r"angles.csv: found 4 pixels \(0 to 3\), expected 3 pixels \(0 to 2\)"),
+        (ROWS, {"view_angles": ""}, "camera.view_angles: found '', expected a CSV of view angles; name the file"),
+        (ROWS, {"view_angles": "../"}, "found a folder, expected a CSV of view angles; correct camera.view_angles"),
+        (ROWS, {"view_angles": "/dev/full"}, "/dev/full: found a device or pipe, expected a CSV of view angles"),
     ],
 )
 def test_what_is_no_table_is_told_in_one_line(written, rows, camera, found):
     with pytest.raises(InputError, match=found):
         load_platform(written(rows, **camera), "robot")
+
+
+def test_a_bad_table_is_one_fault(written):
+    (fault,) = platform_faults(written(FALLING), "robot")
+    assert fault.place.endswith("angles.csv, line 3, across_deg")
+
+
+def test_what_is_no_small_text_is_not_read(written):
+    path = written() / "angles.csv"
+    path.write_bytes(ROWS.encode("utf-16"))
+    with pytest.raises(InputError, match=r"angles.csv: found bytes that are no text in UTF-8, .*; save it as UTF-8"):
+        read_view_angles(path)
+    path.unlink()
+    os.mkfifo(path)
+    with pytest.raises(InputError, match="found a device or pipe"):
+        read_view_angles(path)
+    path.unlink()
+    with path.open("wb") as file:
+        file.truncate(10**12)  # of no blocks
+    with pytest.raises(InputError, match="found 1000000000000 bytes, expected a CSV of view angles, at most 10000000"):
+        read_view_angles(path)
+
+
+def test_a_platform_like_another_has_its_own_table_alone(written):
+    folder = written()
+    (folder / "narrow.csv").write_text("pixel,across_deg\n0,-1\n1,0\n2,1\n3,2\n")
+    (folder / "other.yaml").write_text("like: robot\ncamera: {view_angles: narrow.csv}\n")
+    assert load_platform(folder, "other").camera.view_angles.along_deg == ()
+    assert camera_keys(folder, "other") == {"view_angles", "n_pixels"}
+    (folder / "short.yaml").write_text("like: robot\ncamera: {n_pixels: 3}\n")
+    with pytest.raises(InputError, match=r"angles.csv: found 4 pixels .*, expected 3 pixels"):
+        load_platform(folder, "short")
+    (folder / "wide.yaml").write_text("like: robot\ncamera: {principal_point_px: 2}\n")
+    with pytest.raises(InputError, match=r"wide.yaml: camera: .*leave out principal_point_px \(null where `like`"):
+        load_platform(folder, "wide")
 
 
 def test_a_simulated_platform_may_have_another_camera_in_truth(written):

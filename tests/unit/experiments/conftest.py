@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.geometry.pose import POSE_COLUMNS
 from linepose.likelihood.base import Likelihood, Residuals
 from linepose.survey.observations import Survey

@@ -17,6 +17,8 @@ from linepose.settings import faults_of
 SIZE = {"n_pixels": 2000, "principal_point_px": 999.5}
 TABLE = {"pixel": [0, 600, 1300, 1999], "across_deg": [-20.0, -8.0, 6.0, 21.0], "along_deg": [0.1, 0.0, 0.0, 0.1]}
 
+MILLIMETRES = {"focal_length_m": 8e-3, "pixel_pitch_m": 8e-6}
+
 
 def test_focal_length_counts_pixels(camera):
     assert camera.focal_length_px == 8e-3 / 8e-6
@@ -65,7 +67,26 @@ def test_a_camera_told_by_angles_is_read_back_as_it_is():
             {"field_of_view_deg": 40, "view_angles": TABLE},
             "found field_of_view_deg and view_angles, expected one of them",
         ),
-        ({"field_of_view_deg": 180}, "field_of_view_deg: found 180, expected less than 180"),
+        ({"field_of_view_deg": 180}, "field_of_view_deg: found 180, expected less than or equal to 179"),
+        ({"field_of_view_deg": "34 deg"}, "field_of_view_deg: found '34 deg', expected a valid number"),
+        ({"field_of_view_deg": [34]}, r"field_of_view_deg: found \[34\], expected a valid number"),
+        ({"field_of_view_deg": "3_4"}, "field_of_view_deg: found '3_4'"),
+        ({"field_of_view_deg": 1e-9}, "field_of_view_deg: found 1e-09, expected greater than or equal to 0.01"),
+        ({"field_of_view_deg": 34, "pixel_pitch_m": "x"}, "pixel_pitch_m: found 'x'"),
+        (
+            {"field_of_view_deg": 34, "sigmas": {"field_of_view_deg": 0}},
+            "sigmas.field_of_view_deg: found 0, expected gr",
+        ),
+        ({"view_angles": "angles.csv"}, "view_angles: found 'angles.csv', expected keys and values"),
+        ({**MILLIMETRES, "smile": 1e300}, r"smile: found 1e\+300, expected less than or equal to 1000000"),
+        *(
+            (
+                {**MILLIMETRES, "sigmas": {name: 1e9}},
+                f"sigmas.{name}: found 1000000000.0, expected less than or equal to",
+            )
+            for name in ("k1", "k3", "p2", "tilt", "smile")
+        ),
+        ({**MILLIMETRES, "sigmas": {"k1": 1e-300}}, "sigmas.k1: found 1e-300, expected 0, or 1e-15 and more"),
         (
             {"field_of_view_deg": 40, "sigmas": {"focal_length_m": 1e-4}},
             "sigmas.focal_length_m: found a sigma in metres .* told by field_of_view_deg, expected .* for 1 % of",
@@ -74,7 +95,7 @@ def test_a_camera_told_by_angles_is_read_back_as_it_is():
         ({}, "focal_length_m: found nothing"),
         (
             {"view_angles": TABLE | {"across_deg": [3.0, 2.0, 1.0, 0.0]}},
-            "^Camera: view_angles.across_deg: found 2 after 3, at pixel .*rises from pixel to pixel; turn all signs$",
+            "^Camera: view_angles.across_deg: found 2 after 3 in row 2, expected angles that rise .*; turn all signs$",
         ),
         ({"view_angles": TABLE | {"pixel": [0, 600, 500, 1999]}}, "pixels that rise from row to row"),
         (
@@ -83,8 +104,10 @@ def test_a_camera_told_by_angles_is_read_back_as_it_is():
         ),
         (
             {"view_angles": TABLE | {"pixel": [1, 600, 1300, 1999]}},
-            "from pixel 1 to 1999, expected from pixel 0 to 1999",
+            r"view_angles: found 1999 pixels \(1 to 1999\), expected 2000 pixels",
         ),
+        ({"view_angles": TABLE, "n_pixels": 1300}, "found 2000 pixels .*, expected 1300 pixels"),
+        ({"view_angles": TABLE | {"along_deg": [0.0, 0.0, 90.0, 0.0]}}, "along_deg: found 90 in row 3"),
         (
             {"field_of_view_deg": 40, "sigmas": {"focal_length_m": 1e-5, "field_of_view_deg": 1}},
             "sigmas: found focal_length_m and field_of_view_deg, expected one of them",
@@ -93,7 +116,32 @@ def test_a_camera_told_by_angles_is_read_back_as_it_is():
 )
 def test_a_camera_that_is_told_twice_or_wrongly_is_refused(values, found):
     with pytest.raises(InputError, match=found):
-        Camera(**SIZE, **values)
+        Camera(**SIZE | values)
+
+
+@pytest.mark.parametrize(
+    ("values", "keys"),
+    [
+        ({"view_angles": TABLE | {"across_deg": [3.0, 2.0, 1.0, 0.0]}}, ["view_angles"]),
+        ({"field_of_view_deg": "34 deg", "principal_point_px": 9.0}, ["field_of_view_deg"]),
+        ({"field_of_view_deg": 34, "principal_point_px": 9.0, "n_pixels": 0}, ["n_pixels"]),
+        ({"field_of_view_deg": 34, "sigmas": {"field_of_view_deg": -1}}, ["principal_point_px", "sigmas"]),
+    ],
+)
+def test_a_fault_of_what_tells_the_scale_is_told_once(values, keys):
+    faults = faults_of(Camera, {"n_pixels": 2000} | values, "robot")
+    assert [one.place.removeprefix("robot: ").split(".")[0] for one in faults] == keys
+
+
+def test_the_narrowest_and_widest_field_and_finest_sigma_make_a_camera():
+    for field_deg, n_pixels in ((0.01, 1_000_000), (179, 1)):
+        camera = Camera(
+            field_of_view_deg=field_deg,
+            n_pixels=n_pixels,
+            principal_point_px=0.0,
+            pixel_pitch_m=1e-9 if n_pixels == 1 else 0.1,
+        )
+        assert 2 * np.degrees(np.arctan(n_pixels / 2 / camera.focal_length_px)) == pytest.approx(field_deg)
 
 
 def test_points_are_carried_onto_a_bent_line(camera):
@@ -151,4 +199,4 @@ def test_a_bad_table_of_angles_is_one_fault_and_not_the_lack_of_what_it_tells():
     (fault,) = faults_of(Camera, {"view_angles": table, "n_pixels": 2000}, "mine.yaml")
     assert str(fault).startswith("mine.yaml: view_angles.across_deg: found 0.5 after 1")
     (fault,) = faults_of(Camera, {"view_angles": {"pixel": [0, 1], "across_deg": [0, 1]}, "n_pixels": 2}, "mine.yaml")
-    assert "view_angles.pixel" in str(fault)
+    assert str(fault).startswith("mine.yaml: view_angles: found 2 rows, expected 4 rows or more")

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, CameraSigmas, pixel_from_normalised
+from linepose.geometry.camera import Camera, pixel_from_normalised
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.survey.observations import Survey
 
 FIELD_FOLDER = Path(__file__).resolve().parents[4] / "shared" / "ladybird"

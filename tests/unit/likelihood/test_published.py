@@ -8,7 +8,8 @@ import pytest
 from scipy.optimize import minimize
 
 from linepose.errors import EstimationError, InputError
-from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.likelihood import kernel, layout
 from linepose.likelihood.layout import LANES
 from linepose.likelihood.prepare import survey_rows

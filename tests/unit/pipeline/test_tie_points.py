@@ -9,7 +9,8 @@ from linepose.adjustment.at_levels import pose_at_levels
 from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.pipeline.ground_height import ground_down_m
 from linepose.pipeline.load import read_points, with_navigation
 from linepose.simulation.flight_section import FlightSection, StripSection, TexturedGroundSection

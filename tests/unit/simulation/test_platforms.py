@@ -6,7 +6,8 @@ import pytest
 import yaml
 
 from linepose.geometry import rotations
-from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.likelihood.published import PublishedLikelihood
 from linepose.simulation.projection import exact_projections
 from linepose.simulation.settings import NavigationErrorSettings, settings_from_dict

@@ -3,7 +3,8 @@
 import numpy as np
 
 from linepose.adjustment.levels import Levels
-from linepose.geometry.camera import Camera, CameraSigmas
+from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.output.map.frame import SurveyMap
 from linepose.output.map.ground import flat_ground
 from linepose.output.map.places import Navigation, ScanOnMap
