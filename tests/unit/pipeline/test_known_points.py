@@ -171,7 +171,7 @@ def test_a_height_model_with_holes_leaves_points_out_and_one_elsewhere_is_told(f
 
 
 def test_the_section_is_closed_and_needs_the_adjustment(flight):
-    with pytest.raises(InputError, match="either height_m or dem"):
+    with pytest.raises(InputError, match="found neither height_m nor dem, expected one of them"):
         GroundSection(sigma_m=1.0)
     values = platform(flight, ground={"height_m": 0.0, "sigma_m": 1.0}).model_dump() | {"noise_model": "published"}
     with pytest.raises(InputError, match="has no use for them"):
@@ -208,14 +208,17 @@ def test_points_without_a_target_have_no_place_in_its_frame(flight, tmp_path):
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({"target": CHESSBOARD | {"sigma_m": None}}, "sigma_m with known: true"),
-        ({"target": CHESSBOARD, "noise_model": "published"}, "noise_model adjustment with target.known"),
+        ({"target": CHESSBOARD | {"sigma_m": None}}, "target.sigma_m: found nothing, expected .*; add sigma_m"),
+        (
+            {"target": CHESSBOARD, "noise_model": "published"},
+            "found target.known with noise_model published.*; leave target.known out",
+        ),
         (
             {
                 "target": CHESSBOARD,
                 "source": {"kind": "scans", "dataset": "x", "points": "matching", "matching": {"ground_height_m": 0.0}},
             },
-            "source.points detection or labels with target.known",
+            "found target.known with source.points matching.*; leave target.known out",
         ),
         ({"target": {"kind": "points", "known": True}}, r"target\.known: found an unknown key"),
     ],

@@ -34,7 +34,7 @@ def test_heights_are_raised_by_what_the_platform_says(tmp_path):
     assert ground_of(SimpleNamespace(), section, MAP, tmp_path).extremes_m.tolist() == [-3.0, 8.0]
     flat = ground_of(SimpleNamespace(), MapSection(ground="height", height_m=5.0, height_offset_m=30.0), MAP, tmp_path)
     assert flat.offset == 35.0
-    with pytest.raises(InputError, match="no height_offset_m with `ground: points`"):
+    with pytest.raises(InputError, match="height_offset_m: found 1, expected none with `ground: points`"):
         MapSection(height_offset_m=1.0)
 
 
