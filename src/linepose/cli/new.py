@@ -1,24 +1,32 @@
 """`linepose new NAME`: a commented platform file from options, or from answers to questions."""
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from linepose.cli.answers import given, positive, source_kind, triple, whole
+from linepose.cli.camera_options import ToldCamera, asked_camera, check_one_way
 from linepose.cli.options import HERE
 
 if TYPE_CHECKING:
     from linepose.survey.targets.base import TargetSection
 
-_SOURCES = ("labelled_views", "scans")
-
 
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the platform: letters, digits, - and _.")],
-    focal_length_mm: Annotated[float | None, typer.Option(help="Focal length (mm).")] = None,
+    focal_length_mm: Annotated[float | None, typer.Option(help="Focal length (mm), with --pixel-pitch-um.")] = None,
     pixel_pitch_um: Annotated[float | None, typer.Option(help="Width of a pixel on the sensor (um).")] = None,
+    field_of_view_deg: Annotated[
+        float | None, typer.Option(help="In place of these two: field of view of the whole line (deg).")
+    ] = None,
+    view_angles: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="In place of these: a CSV with the view angle of each pixel (docs/conventions.md)."
+        ),
+    ] = None,
     pixels: Annotated[int | None, typer.Option(min=2, help="Pixels of a scan line.")] = None,
     principal_point_px: Annotated[
         float | None, typer.Option(help="Where the optical axis meets the line (px).", show_default="the middle")
@@ -88,32 +96,32 @@ def new(
     if navigation_file is not None:
         source = source or "scans"
         navigation_format, navigation_keys = _recognised(navigation_file, navigation_format)
-    needed = (focal_length_mm, pixel_pitch_um, pixels, position_m, euler_deg)
-    _check_numbers(focal_length_mm, pixel_pitch_um, principal_point_px, *(position_m or ()), *(euler_deg or ()))
-    asks = any(value is None for value in needed)
+    camera = ToldCamera(focal_length_mm, pixel_pitch_um, field_of_view_deg, view_angles)
+    check_one_way(camera, principal_point_px)
+    _check_numbers(*camera.numbers(), principal_point_px, *(position_m or ()), *(euler_deg or ()))
+    asks = not camera.is_whole() or any(value is None for value in (pixels, position_m, euler_deg))
     root, platforms = _places(project)
     if (platforms / f"{name}.yaml").exists() and not force:
         _refuse(platforms / f"{name}.yaml")
-    focal_length_mm = _given(focal_length_mm, "--focal-length-mm", "Focal length (mm)", _number)
-    pixel_pitch_um = _given(pixel_pitch_um, "--pixel-pitch-um", "Pixel pitch (um)", _number)
-    pixels = _given(pixels, "--pixels", "Pixels of a scan line", _whole)
-    if asks and principal_point_px is None:
+    camera = asked_camera(camera)
+    pixels = given(pixels, "--pixels", "Pixels of a scan line", whole)
+    if asks and principal_point_px is None and camera.view_angles is None:
         ask = "Principal point (px; the middle if not known)"
-        principal_point_px = _given(None, "--principal-point-px", ask, _number, (pixels - 1) / 2)
+        principal_point_px = given(None, "--principal-point-px", ask, positive, (pixels - 1) / 2)
     ask = "Camera in the body frame: forward right down (m), as in 0.2 0 -0.8"
-    position_m = _given(position_m, "--position-m", ask, _triple)
+    position_m = given(position_m, "--position-m", ask, triple)
     ask = "Camera to body: roll pitch yaw (deg), as in -56 0 -90"
-    euler_deg = _given(euler_deg, "--euler-deg", ask, _triple)
+    euler_deg = given(euler_deg, "--euler-deg", ask, triple)
     if asks and source is None:
         ask = "Recorded: labelled_views (points with poses) or scans (images and a raw log)"
-        source = _given(None, "--source", ask, _source, "labelled_views")
+        source = given(None, "--source", ask, source_kind, "labelled_views")
     if asks and dataset is None:
-        dataset = _given(None, "--dataset", "Folder of its files below data/", str, name)
+        dataset = given(None, "--dataset", "Folder of its files below data/", str, name)
     if asks and source == "scans" and navigation_format is None:
         from linepose.inputs.navigation.registry import FORMATS
 
         ask = f"Navigation log ({', '.join(FORMATS.names())})"
-        navigation_format = _given(None, "--navigation-format", ask, str, "table")
+        navigation_format = given(None, "--navigation-format", ask, str, "table")
     if navigation_file is not None:
         navigation = navigation or _below(root / "data" / (dataset or name), navigation_file)
     sigmas = {"sigma_position_m": sigma_position_m, "sigma_rotation_deg": sigma_rotation_deg}
@@ -121,8 +129,10 @@ def new(
         platforms,
         NewPlatform(
             name=name,
-            focal_length_m=_scaled(focal_length_mm, 3),
-            pixel_pitch_m=_scaled(pixel_pitch_um, 6),
+            focal_length_m=camera.focal_length_m,
+            pixel_pitch_m=camera.pixel_pitch_m,
+            field_of_view_deg=camera.field_of_view_deg,
+            view_angles=camera.view_angles,
             n_pixels=pixels,
             position_m=position_m,
             euler_deg=euler_deg,
@@ -216,56 +226,3 @@ def _add_to_project(root: Path, name: str) -> None:
         typer.echo(f"wrote {make_project(root, name)}")
     elif add_platform(root / CONFIG, name):
         typer.echo(f"added {name} to the platforms of {root / CONFIG}")
-
-
-def _given(value: Any, option: str, question: str, kind: Callable[[str], Any], default: Any = None) -> Any:
-    """The option's value, or the answer to a question; a usage error that names the option where nobody answers."""
-    while value is None:
-        try:
-            answer = str(typer.prompt(question, default=default))
-        except typer.Abort:
-            typer.echo(err=True)
-            asked = question.partition(" (")[0].partition(":")[0].lower()
-            raise typer.BadParameter(f"no answer for {asked}: give it as {option}") from None
-        try:
-            value = kind(answer)
-        except ValueError as error:
-            typer.echo(f"{answer!r}: {error}; try again")
-    return value
-
-
-def _number(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not value > 0 or math.isinf(value):
-        raise ValueError("expected a number above 0")
-    return value
-
-
-def _whole(text: str) -> int:
-    value = _number(text)
-    if value != int(value) or value < 2:
-        raise ValueError("expected a whole number from 2")
-    return int(value)
-
-
-def _triple(text: str) -> tuple[float, float, float]:
-    """Three numbers between spaces or commas."""
-    try:
-        first, second, third = (float(part) for part in text.strip("[]()").replace(",", " ").split())
-    except ValueError:
-        raise ValueError("expected three numbers") from None
-    return first, second, third
-
-
-def _source(text: str) -> str:
-    if text not in _SOURCES:
-        raise ValueError(f"expected one of {', '.join(_SOURCES)}")
-    return text
-
-
-def _scaled(value: float, power: int) -> float:
-    """The value over ten to this power, with no digit that the person did not give."""
-    return float(f"{value:.15g}e-{power}")

@@ -7,13 +7,13 @@ from typing import Any, Final, Literal, get_args, get_origin
 
 import yaml
 
+from linepose.config.file_text import descriptions, number, numbers, quoted
 from linepose.config.names import check_name
+from linepose.config.new_camera import NewCamera, camera_lines, camera_values, copy_table
 from linepose.config.platform import NavigationSection, Platform
 from linepose.config.target_file import target_text
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT
-from linepose.geometry.camera import Camera
-from linepose.geometry.camera_sigmas import CameraSigmas
 from linepose.inputs.navigation.format import NavigationFormatSection
 from linepose.inputs.navigation.registry import FORMATS
 from linepose.inputs.source import LabelledViewsSection, ScansSection
@@ -29,13 +29,14 @@ Triple = tuple[float, float, float]
 class NewPlatform:
     """What a person knows of a new platform; units in the names, as in the platform file.
 
-    `navigation` is a file (CSV, Parquet) or, with `navigation_format`, a log in that format; for scans only.
-    `navigation_keys` are what is known of the log's own keys. `target` is what the scans show.
+    The camera is told by focal length and pixel pitch, by its field of view, or by a file of view angles, which is
+    copied beside the platform's. `navigation` is a file (CSV, Parquet) or, with `navigation_format`, a log in that
+    format; for scans only. `navigation_keys` are what is known of the log's own keys. `target` is what the scans show.
     """
 
     name: str
-    focal_length_m: float
-    pixel_pitch_m: float
+    focal_length_m: float | None
+    pixel_pitch_m: float | None
     n_pixels: int
     position_m: Triple
     euler_deg: Triple
@@ -49,6 +50,21 @@ class NewPlatform:
     navigation: str = ""
     navigation_keys: Mapping[str, Any] = field(default_factory=dict)
     target: TargetSection | None = None
+    field_of_view_deg: float | None = None
+    view_angles: Path | None = None
+
+    @property
+    def camera(self) -> NewCamera:
+        """What is known of the camera."""
+        return NewCamera(
+            self.n_pixels,
+            self.focal_length_m,
+            self.pixel_pitch_m,
+            self.field_of_view_deg,
+            self.view_angles,
+            f"{self.name}-view-angles.csv",
+            self.principal_point_px,
+        )
 
 
 def platform_text(new: NewPlatform) -> str:
@@ -56,7 +72,7 @@ def platform_text(new: NewPlatform) -> str:
     text = "\n".join(
         [
             *_head(new),
-            *_camera(new),
+            *camera_lines(new.camera, f"{new.name}.yaml"),
             "",
             *_hand(new),
             "",
@@ -71,7 +87,10 @@ def platform_text(new: NewPlatform) -> str:
             "",
         ]
     )
-    validated(Platform, yaml.safe_load(text), f"{new.name}.yaml")
+    values = yaml.safe_load(text)
+    if new.view_angles is not None:
+        values["camera"] |= camera_values(new.camera)
+    validated(Platform, values, f"{new.name}.yaml")
     return text
 
 
@@ -81,6 +100,7 @@ def write_platform(folder: Path, new: NewPlatform, overwrite: bool = False) -> P
     if path.exists() and not overwrite:
         raise InputError(str(path), "a platform of this name", "a new name", "choose another, or give --force")
     text = platform_text(new)
+    copy_table(new.camera, folder, overwrite)
     with atomic_write(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return path
@@ -101,40 +121,19 @@ def _head(new: NewPlatform) -> list[str]:
         f"# {new.name}. Every key, its unit and default: docs/configuration.md",
         f"# After a change of this file: linepose check {new.name}",
         "",
-        f"description: {_quoted(new.description or new.name)}",
+        f"description: {quoted(new.description or new.name)}",
         "",
     ]
 
 
-_SIGMAS: Final = ("u_px", "v_px", "principal_point_px", "focal_length_m", "k1", "k2")
-
-
-def _camera(new: NewPlatform) -> list[str]:
-    middle = (new.n_pixels - 1) / 2
-    principal = middle if new.principal_point_px is None else new.principal_point_px
-    about, sigma = _descriptions(Camera), _descriptions(CameraSigmas)
-    default = CameraSigmas()
-    return [
-        "camera: # from the data sheet, better from a calibration of the lens",
-        f"  focal_length_m: {_number(new.focal_length_m)} # {about['focal_length_m']}",
-        f"  pixel_pitch_m: {_number(new.pixel_pitch_m)} # {about['pixel_pitch_m']}",
-        f"  n_pixels: {new.n_pixels} # {about['n_pixels']}",
-        f"  principal_point_px: {_number(principal)} # {about['principal_point_px']}",
-        f"  k1: 0.0 # {about['k1']}",
-        f"  k2: 0.0 # {about['k2']}",
-        f"  sigmas: # {about['sigmas']}",
-        *(f"    {key}: {_number(getattr(default, key))} # {sigma[key]}" for key in _SIGMAS),
-    ]
-
-
 def _hand(new: NewPlatform) -> list[str]:
-    about = _descriptions(HandMeasured)
+    about = descriptions(HandMeasured)
     return [
         "hand_measured: # the start; body x forward, y right, z down; camera x along the scan line, z the optical axis",
-        f"  position_m: {_triple(new.position_m)} # {about['position_m']}",
-        f"  euler_deg: {_triple(new.euler_deg)} # {about['euler_deg']}",
-        f"  sigma_position_m: {_number(new.sigma_position_m)} # {about['sigma_position_m']}",
-        f"  sigma_rotation_deg: {_number(new.sigma_rotation_deg)} # {about['sigma_rotation_deg']}",
+        f"  position_m: {numbers(new.position_m)} # {about['position_m']}",
+        f"  euler_deg: {numbers(new.euler_deg)} # {about['euler_deg']}",
+        f"  sigma_position_m: {number(new.sigma_position_m)} # {about['sigma_position_m']}",
+        f"  sigma_rotation_deg: {number(new.sigma_rotation_deg)} # {about['sigma_rotation_deg']}",
     ]
 
 
@@ -143,16 +142,16 @@ def _noise_model() -> list[str]:
 
 
 def _navigation(new: NewPlatform) -> list[str]:
-    about, default = _descriptions(NavigationSection), NavigationSection()
+    about, default = descriptions(NavigationSection), NavigationSection()
     lines = [
         "navigation:",
         f"  covariance_columns: {list(default.covariance_columns)} # {about['covariance_columns']}",
-        f"  maximum_gap_s: {_number(default.maximum_gap_s)} # {about['maximum_gap_s']}",
+        f"  maximum_gap_s: {number(default.maximum_gap_s)} # {about['maximum_gap_s']}",
     ]
     if new.source == "scans":
         lines += [
             f"  association: interpolate # {about['association']}",
-            f"  maximum_pose_gap_s: {_number(default.maximum_pose_gap_s)} # {about['maximum_pose_gap_s']}",
+            f"  maximum_pose_gap_s: {number(default.maximum_pose_gap_s)} # {about['maximum_pose_gap_s']}",
         ]
     return lines
 
@@ -161,7 +160,7 @@ def _source(new: NewPlatform) -> list[str]:
     lines = [
         "source:",
         f"  kind: {new.source}",
-        f"  dataset: {_quoted(new.dataset or new.name)} # folder below one of data_folders (config.yaml)",
+        f"  dataset: {quoted(new.dataset or new.name)} # folder below one of data_folders (config.yaml)",
     ]
     if new.source == "labelled_views":
         return [
@@ -179,13 +178,13 @@ def _source(new: NewPlatform) -> list[str]:
         lines += [
             "  # columns time_us (microseconds since 1970), north_m, east_m, down_m, roll_rad, pitch_rad, yaw_rad;",
             "  # a log with other columns or units: linepose new --navigation-format table, or docs/formats.md",
-            f"  navigation: {_quoted(log)}",
+            f"  navigation: {quoted(log)}",
         ]
     else:
         lines += [
             "  navigation: # what each key means: docs/formats.md",
             f"    format: {new.navigation_format}",
-            f"    file: {_quoted(new.navigation or 'navigation.*')} # below the data set's folder",
+            f"    file: {quoted(new.navigation or 'navigation.*')} # below the data set's folder",
             *_format_keys(FORMATS.member(new.navigation_format).section, new.navigation_keys),
         ]
     if not _has_covariances(new):
@@ -240,7 +239,7 @@ def _format_keys(section: type[NavigationFormatSection], known: Mapping[str, Any
         is_set = value not in (None, ()) and (known or not of_key.is_required())
         if is_set and key not in NavigationFormatSection.model_fields:
             about = f"{_choices(of_key.annotation)}{of_key.description or ''}".rstrip(".")
-            lines.append(f"    {key}: {_quoted(value)} # {about}")
+            lines.append(f"    {key}: {quoted(value)} # {about}")
     return lines
 
 
@@ -260,26 +259,3 @@ def _experiments() -> list[str]:
         "  # the stage `splits`, some seconds a split on one core; more are finer (docs/configuration.md)",
         f"  repeatability: {{n_splits: {_FEW_SPLITS}}}",
     ]
-
-
-def _descriptions(section: type) -> Mapping[str, str]:
-    """What each key of a section means, as a comment's words."""
-    fields = section.model_fields  # type: ignore[attr-defined]
-    return {name: (field.description or "").rstrip(".") for name, field in fields.items()}
-
-
-def _number(value: float) -> str:
-    """A number that every YAML reader takes for one: with a point also before an exponent."""
-    text = repr(float(value))
-    mantissa, exponent, power = text.partition("e")
-    return text if "." in mantissa else f"{mantissa}.0{exponent}{power}"
-
-
-def _triple(values: Triple) -> str:
-    return f"[{', '.join(_number(value) for value in values)}]"
-
-
-def _quoted(value: Any) -> str:
-    """A value as YAML on one row; a text in quotes where it needs them."""
-    text: str = yaml.safe_dump(value, default_flow_style=True, width=10_000, sort_keys=False)
-    return text.removesuffix("\n").removesuffix("...").rstrip("\n")

@@ -15,6 +15,7 @@ _REQUIRED: Final = ("pixel", "across_deg")
 _COLUMNS: Final = (*_REQUIRED, "along_deg")
 _INSTEAD: Final = ("focal_length_m", "field_of_view_deg", "principal_point_px")
 _WHAT: Final = "a CSV of view angles"
+_SIGNS: Final = (";", "\t", ",")  # the last, for a comma may be that of decimals
 _HEADING: Final = f"columns {', '.join(_REQUIRED)} and perhaps {_COLUMNS[2]}, by name"
 
 
@@ -55,22 +56,27 @@ def with_view_angles(values: dict[str, Any], place: str, inherits: bool) -> dict
 def read_view_angles(path: Path, n_pixels: int | None = None) -> dict[str, list[float]]:
     """Columns of a CSV: pixel, across_deg, and along_deg where it has it; lines that begin with # are passed over.
 
+    Between cells stands a comma, or the semicolon, tab or blanks of its heading, with which decimals may have a comma.
     Pixels that are numbered from 1 without a gap are counted from 0. Raises InputError naming the line that is none of
     such a table, also where it is not of a line of `n_pixels`.
     """
     lines = small_text(path, _WHAT, "camera.view_angles").splitlines()
     rows = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    heads = [one.strip() for one in next(csv.reader([rows[0][1]]))] if rows else []
+    sign = next((one for one in _SIGNS if rows and one in rows[0][1]), None)
+    heads = _cells(rows[0][1], sign) if rows else []
     unknown = [one for one in heads if one not in _COLUMNS]
     if unknown or not set(_REQUIRED) <= set(heads) or len(set(heads)) < len(heads):
         raise InputError(f"{path}, heading", ", ".join(heads) or "nothing", _HEADING, "name the columns")
     table: dict[str, list[float]] = {name: [] for name in heads}
     for k, line in rows[1:]:
-        cells = next(csv.reader([line]))
+        cells = _cells(line, sign)
         if len(cells) != len(heads):
-            raise InputError(f"{path}, line {k}", f"{len(cells)} cells", f"{len(heads)}, as the heading has", "mend it")
+            remedy = (
+                "mend it, or put semicolons between cells where decimals have a comma" if sign == "," else "mend it"
+            )
+            raise InputError(f"{path}, line {k}", f"{len(cells)} cells", f"{len(heads)}, as the heading has", remedy)
         for name, cell in zip(heads, cells, strict=True):
-            table[name].append(_number(cell, f"{path}, line {k}, {name}"))
+            table[name].append(_number(cell if sign == "," else cell.replace(",", "."), f"{path}, line {k}, {name}"))
     _check(table, [k for k, _ in rows[1:]], path)
     pixels = table["pixel"]
     if pixels == [float(k) for k in range(1, len(pixels) + 1)]:
@@ -79,6 +85,11 @@ def read_view_angles(path: Path, n_pixels: int | None = None) -> dict[str, list[
     if fault is not None:
         raise InputError(str(path), fault.found, fault.expected, fault.remedy)
     return table
+
+
+def _cells(line: str, sign: str | None) -> list[str]:
+    """The cells of a line between these signs, or between blanks where there is none."""
+    return line.split() if sign is None else [one.strip() for one in next(csv.reader([line], delimiter=sign))]
 
 
 def _number(cell: str, place: str) -> float:

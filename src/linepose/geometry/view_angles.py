@@ -114,7 +114,7 @@ def fault_of_width(pixel: Sequence[float], n_pixels: int) -> TableFault | None:
     width = round(pixel[-1] - pixel[0] + 1)
     found = f"{width} pixels ({pixel[0]:g} to {pixel[-1]:g})"
     expected = f"{n_pixels} pixels (0 to {n_pixels - 1}), as camera.n_pixels says"
-    return TableFault(None, None, found, expected, "correct camera.n_pixels, or give this camera's table")
+    return TableFault(None, None, found, expected, "correct the number of pixels, or give this camera's table")
 
 
 @lru_cache(maxsize=8)

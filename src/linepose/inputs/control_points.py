@@ -17,7 +17,7 @@ import pandas as pd
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.local_frame import LocalFrame, local_from_geodetic
-from linepose.inputs.number_files import check_cells
+from linepose.inputs.number_files import check_cells, check_commas
 from linepose.survey.point_knowledge import PointKnowledge
 from linepose.survey.point_names import WHAT, nameless
 
@@ -62,6 +62,7 @@ def _table(path: Path) -> pd.DataFrame:
         table = pd.read_csv(path, dtype=str, skipinitialspace=True, keep_default_na=False)
     except (UnicodeDecodeError, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         raise InputError(str(path), " ".join(str(error).split())[:80], "a CSV table with a header", _REMEDY) from None
+    check_commas(list(table.columns), path)
     check_cells(table, path)
     table.columns = table.columns.str.strip()
     twice = [name for name in table.columns if f"{name}.1" in table.columns]

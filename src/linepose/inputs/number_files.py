@@ -1,13 +1,17 @@
 """Headerless CSV files of numbers, as the field data have them; a fault is named with its row."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import pandas as pd
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+
+_OTHER_SIGNS: Final = {";": "semicolons", "\t": "tabs"}
 
 Whole = np.ndarray[tuple[int], np.dtype[np.int64]]
 
@@ -50,6 +54,8 @@ def _read(path: Path, n_columns: int, n_first: int, what: str) -> tuple[Whole, l
         raise InputError(str(path), "bytes that are not UTF-8", what, "save the file as UTF-8 text") from None
     if not lines:
         raise InputError(str(path), "an empty file", what, "restore it, or leave it out")
+    if n_columns > 1:
+        check_commas(lines[0].split(","), path)
     first, second = np.empty(len(lines), dtype=np.int64), []
     others = np.empty((len(lines), n_columns - n_first))
     for index, cells in enumerate(line.split(",") for line in lines):
@@ -69,6 +75,14 @@ def _read(path: Path, n_columns: int, n_first: int, what: str) -> tuple[Whole, l
                 where = f"{place}, column {column + n_first + 1}"
                 raise InputError(where, repr(cell), "a number", "mend the cell") from None
     return first, second, others
+
+
+def check_commas(cells: Sequence[str], path: Path) -> None:
+    """Raise InputError where the first row of a CSV, split at its commas, has other signs between its cells."""
+    for sign, name in _OTHER_SIGNS.items():
+        if sign in cells[0]:
+            expected, remedy = "commas, and points in decimals", "save it so, or replace them"
+            raise InputError(str(path), f"{name} between cells", expected, remedy)
 
 
 def check_cells(table: pd.DataFrame, path: Path) -> None:

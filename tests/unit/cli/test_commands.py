@@ -131,6 +131,62 @@ def test_new_names_a_log_as_it_lies_below_the_platforms_data(here):
     assert load_platform(here / "config" / "platforms", "mine").source.navigation.file == "log/a.txt"
 
 
+PLACED = GIVEN[4:]
+TABLE = "pixel;across_deg\n" + "".join(f"{pixel};{(pixel - 323.5) / 20}\n" for pixel in range(648))
+
+
+@pytest.mark.parametrize(
+    ("options", "answer", "scale"),
+    [
+        (["--field-of-view-deg", "38"], "38 deg", {"field_of_view_deg": 38.0}),
+        (["--view-angles", "angles.csv"], "angles.csv", {"view_angles": "mine-view-angles.csv"}),
+    ],
+)
+def test_new_writes_a_camera_as_it_is_sold_with_the_keys_that_go_with_it(here, options, answer, scale):
+    (here / "angles.csv").write_text(TABLE)
+    assert given("new", "mine", *options, *PLACED).exit_code == 0
+    platforms = here / "config" / "platforms"
+    written = yaml.safe_load((platforms / "mine.yaml").read_text())["camera"]
+    assert {key: written[key] for key in scale} == scale
+    assert {"focal_length_m", "pixel_pitch_m"}.isdisjoint(written)
+    assert ("principal_point_px" in written) == ("field_of_view_deg" in scale)
+    assert "focal_length_m" not in written["sigmas"]
+    camera = load_platform(platforms, "mine").camera
+    assert camera.sigmas.focal_length_m == pytest.approx(0.01 * camera.focal_length_m, rel=0.02)  # to two digits
+    middle = "323.5\n" if "field_of_view_deg" in scale else ""
+    assert given("new", "asked", *PLACED, answers=f"{answer}\n{middle}\n\n").exit_code == 0
+    assert load_platform(platforms, "asked").camera == camera
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--field-of-view-deg", "38", "--focal-length-mm", "8"], "--focal-length-mm with --field-of-view-deg"),
+        (["--field-of-view-deg", "38", "--pixel-pitch-um", "8"], "leave out --pixel-pitch-um"),
+        (["--view-angles", "angles.csv", "--principal-point-px", "8"], "leave out --principal-point-px"),
+        (["--view-angles", "none.csv"], "none.csv: found no such file, expected a CSV of view angles; correct --view"),
+        (["--view-angles", "short.csv"], "short.csv: found 100 pixels (0 to 99), expected 648 pixels"),
+        (["--field-of-view-deg", "400"], "field_of_view_deg: found 400.0, expected less than or equal to 179"),
+    ],
+)
+def test_new_refuses_a_camera_told_twice_or_by_no_table(here, options, told):
+    (here / "angles.csv").write_text(TABLE)
+    (here / "short.csv").write_text("\n".join(TABLE.split("\n")[:101]))
+    assert told in one_line(given("new", "mine", *options, *PLACED))
+    assert not (here / "config").exists()
+
+
+def test_new_keeps_another_table_of_its_name(here):
+    (here / "angles.csv").write_text(TABLE)
+    table = here / "config" / "platforms" / "mine-view-angles.csv"
+    table.parent.mkdir(parents=True)
+    table.write_text("mine")
+    assert "another table of this name" in one_line(given("new", "mine", "--view-angles", "angles.csv", *PLACED))
+    assert table.read_text() == "mine"
+    assert given("new", "mine", "--view-angles", "angles.csv", *PLACED, "--force").exit_code == 0
+    assert table.read_text() == TABLE
+
+
 def test_new_refuses_what_is_no_finite_number(here):
     assert "found nan, expected finite numbers" in one_line(given("new", "mine", "--focal-length-mm", "nan"))
 

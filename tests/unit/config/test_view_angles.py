@@ -44,6 +44,14 @@ def test_columns_are_found_by_name_and_comments_passed_over(written):
     assert load_platform(folder, "robot").camera.view_angles.along_deg == ()
 
 
+@pytest.mark.parametrize("sign", [";", "\t", "; ", "  "])
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_other_signs_between_cells_and_a_decimal_comma_are_read(written, sign, decimal):
+    folder = written("\n".join(row.replace(",", sign).replace(".", decimal) for row in ROWS.split("\n")))
+    expected = {"pixel": [0, 1, 2, 3], "across_deg": [-2.0, -1.0, 0.5, 2.0], "along_deg": [0.1, 0.0, 0.0, 0.1]}
+    assert read_view_angles(folder / "angles.csv") == expected
+
+
 @pytest.mark.parametrize(
     ("rows", "camera", "found"),
     [
@@ -53,6 +61,7 @@ def test_columns_are_found_by_name_and_comments_passed_over(written):
         ("pixel,angle\n0,1\n", {}, "heading: found pixel, angle, expected columns pixel, across_deg and perhaps along"),
         ("", {}, "heading: found nothing"),
         (ROWS + "5,3.0\n", {}, "line 6: found 2 cells, expected 3"),
+        (ROWS + "5,3,0,0,1\n", {}, "line 6: found 5 cells, expected 3, .*put semicolons between cells where decimals"),
         (ROWS + "5,3.0,x\n", {}, "line 6, along_deg: found 'x', expected a number"),
         (ROWS + "5,nan,0.0\n", {}, "line 6, across_deg: found 'nan', expected a number"),
         (

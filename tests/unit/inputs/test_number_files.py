@@ -2,6 +2,9 @@ import numpy as np
 import pytest
 
 from linepose.errors import InputError
+from linepose.inputs.control_points import read_control_points
+from linepose.inputs.labels.labels import read_labels
+from linepose.inputs.navigation.log_file import read_navigation_log
 from linepose.inputs.number_files import check_microseconds, read_numbers
 
 WHAT = "time (us), a, b"
@@ -94,3 +97,19 @@ def test_microseconds_from_1980_to_2100_pass(tmp_path):
         check_microseconds(np.array([first - 1]), tmp_path)
     with pytest.raises(InputError):
         check_microseconds(np.array([last + 1]), tmp_path)
+
+
+@pytest.mark.parametrize(("sign", "name"), [(";", "semicolons"), ("\t", "tabs")])
+@pytest.mark.parametrize(
+    ("read", "heading"),
+    [
+        (lambda path: read_labels(path, [1]), "observation,point,u_px,line\n"),
+        (read_navigation_log, "time_us,north_m,east_m,down_m\n"),
+        (lambda path: read_control_points(path, None, None), "id,north_m,east_m,down_m\n"),
+        (lambda path: read_numbers(path, 4, WHAT), ""),
+    ],
+)
+def test_tables_tell_other_signs_between_cells(csv, read, heading, sign, name):
+    path = csv(f"{heading}1,2,3,4\n".replace(",", sign).replace("4", "4,5"))
+    with pytest.raises(InputError, match=f"numbers.csv: found {name} between cells, expected commas"):
+        read(path)

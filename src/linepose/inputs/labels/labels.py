@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from linepose.errors import InputError, quoted
-from linepose.inputs.number_files import check_cells
+from linepose.inputs.number_files import check_cells, check_commas
 from linepose.inputs.scans.scan_files import Scan
 from linepose.survey.point_names import WHAT, nameless, point_names
 
@@ -28,6 +28,7 @@ def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
     except (ValueError, OSError, OverflowError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "CSV with a heading", "mend the file") from None
+    check_commas(list(table.columns), path)
     check_cells(table, path)
     twice = [name for name in _COLUMNS if f"{name}.1" in table]
     if twice:

@@ -10,7 +10,7 @@ import pyarrow.csv as pa_csv
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.navigation.usable_rows import usable_rows
-from linepose.inputs.number_files import check_microseconds
+from linepose.inputs.number_files import check_commas, check_microseconds
 from linepose.survey.navigation_log import NavigationLog
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 from linepose.tables import read_parquet
@@ -46,6 +46,8 @@ def _read_columns(path: Path) -> pa.Table:
         if path.suffix == ".parquet":
             table = read_parquet(path)
         else:
+            with path.open(encoding="utf-8", errors="replace") as file:
+                check_commas(file.readline().split(","), path)
             table = pa_csv.read_csv(path, convert_options=pa_csv.ConvertOptions(column_types=types))
         twice = [name for name in _COLUMNS if table.column_names.count(name) > 1]
         if twice:
