@@ -20,8 +20,8 @@ from linepose.inputs.rectified.surface import Surface
 from linepose.inputs.scans.scan_files import Scan
 from linepose.inputs.targets.board_in_scan import fit_board
 from linepose.inputs.targets.board_pose import BoardPose, fit_board_pose
+from linepose.inputs.targets.completed import completed
 from linepose.inputs.targets.detect import Detection
-from linepose.inputs.targets.match_print import match_print
 from linepose.inputs.targets.surfaces import candidate_surfaces, distances_m, farthest_m
 from linepose.survey.navigation_log import NavigationLog, interpolated_pose
 from linepose.survey.targets.base import Found, Picture, RectifiedSection
@@ -125,15 +125,15 @@ class RectifiedDetector:
         board_m = self.target.points()[:, :2]
         row = numbering[found.row]
         if self.refines:
-            in_scan = fit_board(board_m[row], position)
-            jacobian = in_scan.jacobian(board_m[row])
-            position = match_print(scan.intensity, self.target, board_m[row], position, jacobian)
-        kept = np.isfinite(position[:, 0])
-        if kept.sum() < min(_FEWEST_POINTS, len(board_m)):
-            return replace(_nothing("the print around the points does not fit the light"), board_found=True)
-        if not kept.all():
-            log.info("%s: %d of %d points are left out: the print does not fit", scan.name, (~kept).sum(), len(kept))
-        row, position = row[kept], position[kept]
+            detected = row
+            row, position = completed(scan.intensity, self.target, detected, position)
+            if len(row) < min(_FEWEST_POINTS, len(board_m)):
+                return replace(_nothing("the print around the points does not fit the light"), board_found=True)
+            n_lost, n_more = len(np.setdiff1d(detected, row)), len(np.setdiff1d(row, detected))
+            if n_lost:
+                log.info("%s: %d of %d points are left out: the print does not fit", scan.name, n_lost, len(detected))
+            if n_more:
+                log.info("%s: %d more points are found beside those %d", scan.name, n_more, len(detected))
         order = np.argsort(row, kind="stable")
         ids = np.array(self.target.ids(), dtype=np.int64)[row[order]]
         return Detection(ids, position[order, 0], position[order, 1] + first_line)

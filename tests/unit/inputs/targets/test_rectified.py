@@ -59,6 +59,23 @@ def test_every_point_of_a_lying_target_in_its_place_with_its_id(kind):
         assert np.sqrt(np.mean(error**2)) < 0.15
 
 
+def test_markers_too_small_to_be_read_are_found_beside_others_and_covered_ones_are_not():
+    target = CharucoSection()  # cells of markers take three pixels
+    survey = survey_of(target, OPPOSITE)
+    seen = scan_of(survey, 1)
+    found = RectifiedDetector(target, hand_view(survey))(seen.scan)
+    assert len(found.point) == seen.visible.sum()
+    assert np.abs(errors_px(target, found, seen)).max() < 0.4
+    covered = seen.truth[:, 0] > np.quantile(seen.truth[:, 0], 0.7)
+    light = seen.scan.intensity.copy()
+    left = int(seen.truth[covered, 0].min()) - 3
+    light[:, left:] = np.random.default_rng(0).normal(600, 60, light[:, left:].shape)
+    found = RectifiedDetector(target, hand_view(survey))(Scan(light, seen.scan.time_us, "covered"))
+    assert len(found.point) >= 0.8 * (~covered).sum()
+    assert not covered[row_of(target, found.point)].any()
+    assert np.abs(errors_px(target, found, seen)).max() < 0.4
+
+
 def test_standing_target():
     target = CHESSBOARD
     survey = survey_of(target, (16,), upright=True)
