@@ -6,18 +6,20 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 
 if TYPE_CHECKING:
+    from linepose.output.printing.paper import Paper
     from linepose.survey.targets.base import GridSection
 
 
 _DEFAULT: Final = "rings"
+_TOO_LARGE_MM: Final = 1e4  # for a spacing
 
 
 def _tell_kinds(asked: bool) -> None:
     if asked:
-        from linepose.survey.targets.registry import KINDS
+        from linepose.survey.targets.registry import KINDS, PRINTED
 
         for name, section in KINDS.items():
-            typer.echo(f"{name:12s}{section.title}")
+            typer.echo(f"{name:12s}{section.title}{'' if name in PRINTED else ' (nothing to print)'}")
         raise typer.Exit
 
 
@@ -69,7 +71,8 @@ def target(
         _check_view(range_m, pixel_mrad)
     chosen = _chosen(kind, rows, columns, spacing_mm, described)
     sheet = paper_of(paper) if paper else None if tile else paper_of("A1")
-    n_sheets = write_pdf(chosen, output, sheet, paper_of(tile, "--tile") if tile else None)
+    spread = paper_of(tile, "--tile") if tile else None
+    n_sheets = write_pdf(chosen, output, sheet, spread, described is None)
     description = output.with_suffix(".yaml")
     is_new = described is None or described.resolve() != description.resolve()
     if is_new:
@@ -78,8 +81,8 @@ def target(
     typer.echo(f"wrote {output}: {n_sheets} sheet{'s' if n_sheets > 1 else ''}, and a page on mounting it")
     if is_new:
         typer.echo(f"wrote {description}: the section `target` of the platform's file")
-    if range_m is not None and pixel_mrad is not None:
-        _tell_sizes(chosen, range_m, pixel_mrad)
+    if range_m is not None and pixel_mrad is not None and _tell_sizes(chosen, range_m, pixel_mrad):
+        typer.echo(f"  {_remedy(chosen, range_m, pixel_mrad * 1e-3, described, sheet, spread)}come closer")
 
 
 def _chosen(
@@ -101,11 +104,13 @@ def _chosen(
     if kind not in PRINTED:
         import difflib
 
+        if kind in KINDS:
+            remedy = f"nothing is printed for it; write `target: {{kind: {kind}}}` into the platform's file"
+            raise InputError("--kind", f"{kind}, which has no pattern", f"one of {', '.join(PRINTED)}", remedy)
         near = difflib.get_close_matches(kind, PRINTED, n=1)
         remedy = f"did you mean {near[0]}?" if near else f"give --kind {next(iter(PRINTED))}"
-        found = f"{kind}, which has no pattern" if kind in KINDS else repr(kind)
-        raise InputError("--kind", found, f"one of {', '.join(PRINTED)}", remedy)
-    if spacing_mm is not None and not 0 < spacing_mm < 1e4:
+        raise InputError("--kind", repr(kind), f"one of {', '.join(PRINTED)}", remedy)
+    if spacing_mm is not None and not 0 < spacing_mm < _TOO_LARGE_MM:
         raise InputError("--spacing-mm", f"{spacing_mm:g}", "a length above 0 and below 10 m", "correct it")
     try:
         return PRINTED[kind].scaled(rows, columns, None if spacing_mm is None else round(spacing_mm / 1e3, 9))
@@ -124,16 +129,35 @@ def _check_view(range_m: float | None, pixel_mrad: float | None) -> None:
             raise InputError(option, found, "a number above 0", "give both --range-m and --pixel-mrad")
 
 
-def _tell_sizes(target: "GridSection", range_m: float, pixel_mrad: float) -> None:
-    from linepose.output.printing.seen import size_rows, spacing_for
+def _tell_sizes(target: "GridSection", range_m: float, pixel_mrad: float) -> bool:
+    """Tell how large each detail is and must be; returns whether one is too small."""
+    from linepose.output.printing.seen import is_seen, size_rows
 
     typer.echo(f"from {range_m:g} m a pixel sees {range_m * pixel_mrad:.1f} mm:")
-    too_small = False
-    for name, size_m, needed_m in size_rows(target, range_m, pixel_mrad * 1e-3):
-        verdict = "large enough" if size_m >= needed_m else "too small"
-        too_small |= size_m < needed_m
+    rows = size_rows(target, range_m, pixel_mrad * 1e-3)
+    for name, size_m, needed_m in rows:
+        verdict = "large enough" if is_seen(size_m, needed_m) else "too small"
         typer.echo(f"  {name} {size_m * 1e3:.1f} mm, at least {needed_m * 1e3:.1f} mm: {verdict}")
-    if too_small:
-        typer.echo(
-            f"  give --spacing-mm {spacing_for(target, target.spacing, range_m, pixel_mrad * 1e-3)} or come closer"
-        )
+    return any(not is_seen(size_m, needed_m) for _, size_m, needed_m in rows)
+
+
+def _remedy(
+    target: "GridSection",
+    range_m: float,
+    pixel_rad: float,
+    described: Path | None,
+    sheet: "Paper | None",
+    spread: "Paper | None",
+) -> str:
+    """What prints the target large enough, with "or" behind it; empty where nothing does."""
+    from linepose.output.printing.fit import options_for
+    from linepose.output.printing.seen import factor_for, spacing_for
+
+    if described is not None:
+        return f"make all sizes in {described} {factor_for(target, range_m, pixel_rad):.3g} times as large, or "
+    spacing_mm = spacing_for(target, target.spacing, range_m, pixel_rad)
+    if spacing_mm >= _TOO_LARGE_MM:
+        return ""
+    larger = target.scaled(target.rows, target.columns, spacing_mm / 1e3)
+    options = options_for(larger, sheet, spread)
+    return "" if options is None else f"give {' '.join([f'--spacing-mm {spacing_mm}', *options])}, or "

@@ -11,7 +11,17 @@ def size_rows(target: TargetSection, range_m: float, pixel_rad: float) -> list[t
     return [(detail.name, detail.size_m, detail.n_pixels * footprint_m) for detail in target.details()]
 
 
+def is_seen(size_m: float, needed_m: float) -> bool:
+    """Whether a detail of this size is large enough, but for rounding."""
+    return size_m >= needed_m * (1 - 1e-9)
+
+
+def factor_for(target: TargetSection, range_m: float, pixel_rad: float) -> float:
+    """By how much a target must grow to be seen; below 1 where it need not."""
+    return max(needed / size for _, size, needed in size_rows(target, range_m, pixel_rad))
+
+
 def spacing_for(target: TargetSection, spacing_m: float, range_m: float, pixel_rad: float) -> int:
     """The smallest spacing in whole mm at which a target in proportion is seen."""
-    factor = max(needed / size for _, size, needed in size_rows(target, range_m, pixel_rad))
+    factor = factor_for(target, range_m, pixel_rad)
     return math.ceil(round(spacing_m * factor * 1e3, 6))

@@ -1,23 +1,21 @@
 """A target as a PDF file."""
 
 from pathlib import Path
-from typing import Final
 
 from linepose.errors import InputError
 from linepose.output.printing.board import sheet, tiled
-from linepose.output.printing.fit import check_fits
+from linepose.output.printing.fit import MOST_SHEETS, check_fits, sheets_of
 from linepose.output.printing.notes import notes
 from linepose.output.printing.paper import Paper
 from linepose.survey.targets.base import GridSection
 from linepose.tables import atomic_write
 
-_MOST_SHEETS: Final = 400
 
-
-def write_pdf(target: GridSection, path: Path, paper: Paper | None, tile: Paper | None) -> int:
+def write_pdf(target: GridSection, path: Path, paper: Paper | None, tile: Paper | None, may_scale: bool = True) -> int:
     """Write the print, and a page of notes, whole or not at all; returns the number of sheets of the print.
 
-    On one sheet of `paper`, or over as many of `tile` as it takes. Raises InputError where it does not fit.
+    On one sheet of `paper`, or over as many of `tile` as it takes. Raises InputError where it does not fit;
+    `may_scale` says whether its spacing may then be another.
     """
     import matplotlib as mpl
     from matplotlib.backends.backend_pdf import PdfPages
@@ -29,13 +27,13 @@ def write_pdf(target: GridSection, path: Path, paper: Paper | None, tile: Paper 
     artwork = target.artwork()
     assert artwork is not None
     if paper is not None:
-        check_fits(target, artwork, paper)
+        check_fits(target, artwork, paper, may_scale)
     pages = [sheet(target, artwork, paper)] if tile is None and paper is not None else []
     if tile is not None:
-        area = artwork.width_m * artwork.height_m * 1e6 / (tile.inner_mm[0] * tile.inner_mm[1])
-        if area > _MOST_SHEETS:
+        n_sheets = sheets_of(tile, artwork)
+        if n_sheets > MOST_SHEETS:
             raise InputError(
-                "--tile", f"{area:.0f} sheets of {tile.name}", f"at most {_MOST_SHEETS}", "use larger paper"
+                "--tile", f"{n_sheets:.0f} sheets of {tile.name}", f"at most {MOST_SHEETS}", "use larger paper"
             )
         pages = tiled(target, artwork, tile)
     with (

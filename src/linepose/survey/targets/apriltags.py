@@ -82,7 +82,7 @@ class ApriltagsSection(RectifiedSection):
 
     def details(self) -> tuple[Detail, ...]:
         """The tags, whose cells must be told apart."""
-        return (Detail("tag_m", self.tag_m, 3.0 * n_cells(self.family)),)
+        return (Detail("cell of tag_m", self.tag_m / n_cells(self.family), 3.0),)
 
     def find(self, picture: Picture) -> Found | None:
         """The corners of all tags of the grid that were read."""

@@ -83,7 +83,7 @@ class CharucoSection(RectifiedSection):
 
     def details(self) -> tuple[Detail, ...]:
         """The markers, whose cells must be told apart."""
-        return (Detail("marker_m", self.marker_m, 3.0 * n_cells(self.dictionary)),)
+        return (Detail("cell of marker_m", self.marker_m / n_cells(self.dictionary), 3.0),)
 
     def find(self, picture: Picture) -> Found | None:
         """The inner corners between markers that were read."""

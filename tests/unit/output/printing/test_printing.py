@@ -132,11 +132,39 @@ def test_dots_too_small_for_the_range_are_told_with_the_spacing_that_does(tmp_pa
     assert "too small" not in ran.output
 
 
+@pytest.mark.parametrize("kind", ["rings", "charuco"])
+def test_what_is_too_small_is_printed_by_the_options_that_are_told(tmp_path, kind):
+    given = ("--kind", kind, "--range-m", "6", "--pixel-mrad", "1.9", "--output", str(tmp_path / "t.pdf"))
+    (advice,) = re.findall(
+        r"give (--spacing-mm \d+ --\S+ \S+)(?: without --paper)?, or come closer", run(*given).output
+    )
+    ran = run(*given, *advice.split())
+    assert ran.exit_code == 0
+    assert "too small" not in ran.output
+
+
+def test_a_description_is_told_to_grow_and_not_by_options_that_are_refused(tmp_path):
+    run("--kind", "chessboard", "--output", str(tmp_path / "a.pdf"))
+    described = tmp_path / "a.yaml"
+    given = ("--described", str(described), "--output", str(tmp_path / "b.pdf"))
+    told = run(*given, "--range-m", "90", "--pixel-mrad", "1").output
+    side = yaml.safe_load(described.read_text())["target"]["square_m"]
+    assert f"make all sizes in {described} {0.45 / side:.3g} times as large, or come closer" in told
+    too_small = run(*given, "--paper", "A4").output
+    assert "--paper" in too_small
+    assert "--spacing-mm" not in too_small
+
+
+def test_the_list_says_what_is_not_printed():
+    rows = run("--list").output.splitlines()
+    assert [row.split()[0] for row in rows if "nothing to print" in row] == ["points"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
         (("--kind", "ring"), "did you mean rings"),
-        (("--kind", "points"), "points, which has no pattern"),
+        (("--kind", "points"), "write `target: {kind: points}` into the platform's file"),
         (("--rows", "5"), "5 rows and 5 columns"),
         (("--paper", "A11"), "did you mean A1"),
         (("--tile", "10x10"), "--tile: found 10x10"),
