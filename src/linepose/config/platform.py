@@ -22,6 +22,7 @@ from linepose.config.map_frame import MapFrameSection
 from linepose.config.names import check_name
 from linepose.config.outline import OutlineSection
 from linepose.config.points import PointsSection
+from linepose.config.simulated_files import check_simulated_files
 from linepose.config.view_angles import with_named_table, with_view_angles
 from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
@@ -148,6 +149,8 @@ class Platform(Settings):
             if not given:
                 raise SettingsError("neither source.dataset nor a simulation or flight", expected, "give one of them")
             raise SettingsError(" and ".join(given), expected, "leave out all but one")
+        if isinstance(self.source, ScansSection) and given[0] in ("simulation", "flight"):
+            check_simulated_files(self.source, given[0])
         return self
 
     @model_validator(mode="after")

@@ -1,3 +1,4 @@
+import re
 from copy import deepcopy
 from pathlib import Path
 
@@ -250,3 +251,30 @@ def test_simulation_is_closed_and_told_with_its_file(tmp_path, change, told):
     (tmp_path / "robot.yaml").write_text(yaml.safe_dump({"like": "ladybird-sim", "simulation": change}))
     with pytest.raises(InputError, match=f"robot.yaml: {told}"):
         load_platform(tmp_path, "robot")
+
+
+@pytest.mark.parametrize(
+    ("like", "source", "told"),
+    [
+        ("ladybird-sim", {"navigation": "navigation.csv"}, "source.navigation: found 'navigation.csv', expected navig"),
+        ("ladybird-sim", {"navigation": {"format": "sbet", "file": "a.out"}}, "source.navigation: found 'a.out'"),
+        (
+            "ladybird-sim",
+            {"scans": "scans/*.png"},
+            "source.scans: .*, expected scans/observation-01.hdr, which the sim",
+        ),
+        ("ladybird-sim", {"labels": "labels.json"}, "source.labels: found 'labels.json', expected labels.csv"),
+        ("ladybird-sim", {"covariances": "nav_covs.csv"}, "source.covariances: .*, expected covariances.csv"),
+        ("ladybird-sim", {"time_stamps": "hyspex"}, "source.time_stamps: found hyspex, expected csv"),
+        ("drone-sim", {"scans": "scans/observation-*.hdr"}, "source.scans: .*, expected scans/strip-01.hdr"),
+        ("drone-sim", {"points": "labels"}, "source.points: found labels, .*; set source.points: matching"),
+    ],
+)
+def test_a_simulated_platform_reads_what_its_simulation_writes(tmp_path, like, source, told):
+    for name in ("ladybird-sim", "drone-sim"):
+        (tmp_path / f"{name}.yaml").write_bytes((PLATFORMS / f"{name}.yaml").read_bytes())
+    (tmp_path / "robot.yaml").write_text(yaml.safe_dump({"like": like, "source": source}))
+    assert re.search(told, message_of(tmp_path, "robot"))
+    unused = {"labels": "mine.csv", "points": "detection"} if like == "ladybird-sim" else {"labels": "mine.csv"}
+    (tmp_path / "robot.yaml").write_text(yaml.safe_dump({"like": like, "source": unused}))
+    assert load_platform(tmp_path, "robot").source.labels == "mine.csv"
