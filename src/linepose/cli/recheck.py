@@ -50,6 +50,7 @@ def recheck(
 def lines_of(found: "Recheck") -> list[str]:
     """A recheck for people: the verdict, the move of each number, the tests, and warnings."""
     from linepose.estimation.pose_change import GROUPS, POWER, WHOLE
+    from linepose.geometry.pose import TURN_WORDS
 
     whole = found.change.test(WHOLE)
     verdict = "holds" if found.holds else "the camera has moved"
@@ -58,17 +59,17 @@ def lines_of(found: "Recheck") -> list[str]:
     lines = [
         f"{found.name}: {verdict} (p = {whole.p_value:.3g}, alarm below {found.false_alarms:g}; {found.n_views} new "
         f"views beside the calibration's {found.n_calibrated})",
-        f"{'':10s}{'moved by':>14s}{'sigma':>14s}{'least seen':>14s}",
+        f"{'':20s}{'moved by':>14s}{'sigma':>14s}{'least seen':>14s}",
     ]
     for move, row in found.table().iterrows():
         quantity, unit = str(move).rsplit("_", 1)
         digits = 3 if unit == "m" else 2
         cells = (f"{value + 0.0:.{digits}f} {unit}" if abs(value) < 1e3 else "not seen" for value in row)
-        lines.append(f"{quantity:10s}" + "".join(f"{cell:>14s}" for cell in cells))
+        lines.append(f"{TURN_WORDS.get(quantity, quantity):20s}" + "".join(f"{cell:>14s}" for cell in cells))
     for group in GROUPS:
         one = found.change.test(group)
         lines.append(
             f"{group:10s} {one.distance:.2f} sigmas in {one.degrees_of_freedom} directions, p = {one.p_value:.3g}"
         )
-    lines.append(f"least seen: what is found with {POWER:.0%} where it is the only move; turns are about body axes")
+    lines.append(f"least seen: what is found with {POWER:.0%} where it is the only move")
     return [*lines, *(f"care: {warning}" for warning in found.warnings)]

@@ -14,7 +14,7 @@ from linepose.pipeline.summary import PlatformSummary
 
 _STYLES: Final = {Level.GOOD: "bold green", Level.CARE: "bold yellow", Level.BAD: "bold red"}
 _WORDS: Final = {Level.GOOD: "ok", Level.CARE: "care", Level.BAD: "bad"}
-_HEADINGS: Final = ("", "estimate", "sigma", "by hand", "difference", "in sigmas")
+_HEADINGS: Final = ("", "estimate", "sigma", "by hand", "minus by hand", "in its sigmas")
 
 
 def tables(summary: PlatformSummary, removed: Sequence[int]) -> list[RenderableType]:
@@ -32,13 +32,13 @@ def tables(summary: PlatformSummary, removed: Sequence[int]) -> list[RenderableT
         if check.advice:
             told.append(f"\n→ {check.advice}", style="bold")
         reasons.add_row(Text(_WORDS[check.level], style=_STYLES[check.level]), check.name, told)
-    head = Text(f"{summary.description}\n{summary.verdict.sentence}", style=_STYLES[summary.verdict.level])
+    head = Text(f"{_title(summary)}\n{summary.verdict.sentence}", style=_STYLES[summary.verdict.level])
     return [head, pose, Text(_about(summary, removed)), reasons]
 
 
 def plain_lines(summary: PlatformSummary, removed: Sequence[int]) -> list[str]:
     """The same as lines that a program or a log can take."""
-    lines = [summary.description, summary.verdict.sentence]
+    lines = [_title(summary), summary.verdict.sentence]
     lines.append(f"{_HEADINGS[0]:16s}" + "".join(f"{heading:>14s}" for heading in _HEADINGS[1:]))
     for number in _numbers(summary):
         name, *cells = _cells(number)
@@ -49,6 +49,12 @@ def plain_lines(summary: PlatformSummary, removed: Sequence[int]) -> list[str]:
         if check.advice:
             lines.append(f"      -> {check.advice}")
     return lines
+
+
+def _title(summary: PlatformSummary) -> str:
+    """The platform's name, and its description where that says more."""
+    told = summary.description
+    return told if told == summary.name else f"{summary.name}: {told}"
 
 
 def _numbers(summary: PlatformSummary) -> list[PoseNumber]:
@@ -62,7 +68,7 @@ def _cells(number: PoseNumber) -> tuple[str, ...]:
     return (
         number.name,
         *(f"{round(value, digits) + 0.0:.{digits}f} {unit}" for value in told),
-        f"{round(number.difference_sigmas, 1) + 0.0:+.1f}",
+        f"{number.difference_sigmas:+.1f}",
     )
 
 
@@ -70,6 +76,6 @@ def _about(summary: PlatformSummary, removed: Sequence[int]) -> str:
     quaternion = ", ".join(f"{value:.6f}" for value in summary.quaternion)
     without = f" (removed: {', '.join(map(str, removed))})" if removed else ""
     return (
-        f"quaternion w, x, y, z: {quaternion}; {summary.n_accepted} of {summary.n_observations} observations accepted"
-        f"{without}, -log L {summary.neg_log_likelihood:.3f}, noise model {summary.noise_model}"
+        f"quaternion w, x, y, z: {quaternion}; {summary.observations_in_words}{without}, "
+        f"{summary.misfit_in_words}, noise model {summary.noise_model}"
     )

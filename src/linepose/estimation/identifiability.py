@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
 from linepose.geometry import rotations
+from linepose.geometry.pose import TURN_WORDS
 
 TURN_NAMES: Final = ("roll_rad", "pitch_rad", "yaw_rad")
 NOTABLE_SHARE: Final = 0.35  # of the largest component: what is named in the weakest direction
@@ -25,9 +26,7 @@ WORDS: Final = {
     "theta_x_rad": "theta_x",
     "theta_y_rad": "theta_y",
     "theta_z_rad": "theta_z",
-    "roll_rad": "the roll of the camera",
-    "pitch_rad": "the pitch of the camera",
-    "yaw_rad": "the yaw of the camera",
+    **{f"{axis}_rad": f"the {words}" for axis, words in TURN_WORDS.items()},
     "log_shared_level": "the shared level",
     "log_white_level": "the white level",
     "log_pixel_level": "the pixel level",
@@ -93,7 +92,7 @@ def identifiability(names: Sequence[str], posterior_covariance: ArrayLike, prior
 
 
 def in_words(names: Sequence[str], direction: ArrayLike) -> str:
-    """A direction (P,) as its notable parts, largest first: "r_z with the roll of the camera against r_x".
+    """A direction (P,) as its notable parts, largest first: "r_z with the turn about forward against r_x".
 
     "with" joins what grows together with the first part, "against" what falls.
     """
@@ -112,7 +111,7 @@ def in_words(names: Sequence[str], direction: ArrayLike) -> str:
 def in_body_axes(names: Sequence[str], parameters: ArrayLike, covariance: ArrayLike) -> tuple[tuple[str, ...], Floats]:
     """Names and covariance (P, P) with the camera's rotation vector replaced by small turns about the body's axes.
 
-    Turns about forward, right and down (roll, pitch, yaw, rad) mean something to a reader; components of a rotation
+    Turns about forward, right and down (rad) mean something to a reader; components of a rotation
     vector do not. The first six of the parameters (P,) are the pose.
     """
     vector = np.asarray(parameters, dtype=float)

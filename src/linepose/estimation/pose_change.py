@@ -13,7 +13,7 @@ from linepose.arrays import Floats
 from linepose.geometry.distance import p_value
 from linepose.geometry.pose import N_PARAMETERS
 
-MOVES: Final = ("forward_m", "right_m", "down_m", "roll_deg", "pitch_deg", "yaw_deg")  # turns about body axes
+MOVES: Final = ("forward_m", "right_m", "down_m", "roll_deg", "pitch_deg", "yaw_deg")  # TURN_WORDS says which turns
 PER_MOVE: Final = np.array([1.0] * 3 + [float(np.degrees(1.0))] * 3)  # from m and rad
 GROUPS: Final = {"lever arm": (0, 3), "boresight": (3, 6), "all six": (0, 6)}
 WHOLE: Final = "all six"

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Final
 
+from linepose.geometry.pose import TURN_WORDS
+
 IDENTIFIABLE_SHRINKAGE: Final = 0.75  # of the shrinkage: the sigma is half of what it was before any data
 MOST_COMMON: Final = 0.98  # correlation with the whole pose, where a sigma is five times what it is with the pose known
 LINKED: Final = 0.9  # correlation with the pose, from which it is the pose that hides the offset, and not the noise
@@ -12,9 +14,7 @@ _WORDS: Final = {
     "r_x": "forward lever arm",
     "r_y": "sideways lever arm",
     "r_z": "height",
-    "roll": "roll",
-    "pitch": "pitch",
-    "yaw": "yaw",
+    **TURN_WORDS,
 }
 
 

@@ -17,6 +17,8 @@ from linepose.geometry import rotations
 POSE_COLUMNS: Final = ("r_x_m", "r_y_m", "r_z_m", "theta_x_rad", "theta_y_rad", "theta_z_rad")
 SIGMA_COLUMNS: Final = tuple(f"sigma_{name}" for name in POSE_COLUMNS)
 N_PARAMETERS: Final = 6
+TURN_WORDS: Final = {"roll": "turn about forward", "pitch": "turn about right", "yaw": "turn about down"}
+"""Small turns of the camera about the body's axes in words; they are no changes of Euler angles."""
 
 
 def check_pose(pose: ArrayLike, name: str = "pose") -> Floats:

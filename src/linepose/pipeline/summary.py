@@ -40,6 +40,12 @@ class PlatformSummary:
         return f"all {self.n_observations} observations, each with its weight"
 
     @property
+    def misfit_in_words(self) -> str:
+        """What the search made least, at the pose."""
+        name = "-log L" if self.removes_outliers else "half of chi squared"
+        return f"{name} {self.neg_log_likelihood:.3f}"
+
+    @property
     def plain_pose(self) -> list[PoseNumber]:
         """Position and Euler angles, or the rotation vector where they do not tell the rotation."""
         return self.rotation_vector[:3] + (self.euler or self.rotation_vector[3:])

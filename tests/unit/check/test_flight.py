@@ -80,7 +80,7 @@ def test_one_height_leaves_pitch_to_the_forward_lever_and_its_cures_are_told():
     findings, sigmas = flight_findings(platform(LAYOUTS["one-height"], 100))
     (finding,) = findings
     assert finding.level == Level.WARNING
-    assert "the pitch of the camera" in finding.found
+    assert "the turn about right" in finding.found
     assert "not told apart from the forward lever (correlation -0.9" in finding.found
     assert "fly a second height, every other pair of strips at 60 m" in finding.advice
     assert "measure the lever to 1 cm" in finding.advice

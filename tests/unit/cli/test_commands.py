@@ -4,6 +4,7 @@ import fcntl
 import io
 import logging
 import os
+import re
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -328,7 +329,7 @@ def test_check_of_good_files_ends_well_in_plain_lines_that_hold_every_finding(mi
     console.print(sigmas_table(reports[0]))
     text = console.export_text()
     assert all(finding.subject in text for finding in reports[0].findings)
-    assert "the roll of the camera" in text
+    assert "the turn about forward" in text
 
 
 def test_check_of_bad_files_ends_with_one_and_tells_all(mine):
@@ -489,6 +490,15 @@ def finished(mine, monkeypatch):
     return mine
 
 
+def test_show_tells_what_a_model_removed_that_removes(finished):
+    path = finished / "config" / "platforms" / "mine.yaml"
+    path.write_text(path.read_text().replace("noise_model: adjustment", "noise_model: published"))
+    result = given("show", "mine")
+    assert result.exit_code == 0, result.output
+    (told,) = [line for line in result.stdout.splitlines() if line.startswith("quaternion")]
+    assert re.search(r"4 of 6 observations accepted \(removed: \d, \d\), -log L [-\d.]+, noise model published$", told)
+
+
 def test_show_tells_pose_verdict_and_where_files_are(finished):
     result = given("show", "mine")
     assert result.exit_code == 0, result.output
@@ -497,8 +507,11 @@ def test_show_tells_pose_verdict_and_where_files_are(finished):
         (line,) = [line for line in lines if line.startswith(f"{name} ")]
         assert f"{value:.4f} m" in line
     assert any(line.startswith("roll") and "deg" in line for line in lines)
-    assert any("4 of 6 observations accepted" in line for line in lines)
-    assert any("removed: " in line for line in lines)
+    assert lines[0] == "mine"
+    assert lines[2].endswith(" minus by hand in its sigmas")
+    assert any("all 6 observations, each with its weight" in line for line in lines)
+    assert any("half of chi squared" in line for line in lines)
+    assert not any("-log L" in line for line in lines)
     assert "not made yet: figures and report; the run goes on with: linepose run mine" in lines
     assert "report.html" not in result.stdout
 

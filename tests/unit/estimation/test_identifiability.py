@@ -26,7 +26,7 @@ def test_a_linear_model_gives_the_closed_form():
     found = identifiability(("r_z_m", "roll_rad"), posterior, prior)
     assert found.weakest_shrinkage == pytest.approx(0.0, abs=1e-9)
     assert np.allclose(np.abs(found.weakest_direction), np.sqrt(0.5))
-    assert found.weakest_in_words() in {"r_z against the roll of the camera", "the roll of the camera against r_z"}
+    assert found.weakest_in_words() in {"r_z against the turn about forward", "the turn about forward against r_z"}
     assert np.allclose(found.shrinkage, 0.5, atol=1e-3)
     assert found.correlation[0, 1] == pytest.approx(-1, abs=0.01)
 
@@ -38,12 +38,12 @@ def test_units_do_not_decide_the_weakest_direction():
     metres = identifiability(NAMES[:2], covariance, prior)
     millimetres = identifiability(NAMES[:2], covariance * np.outer(scale, scale), prior * scale)
     assert np.allclose(metres.weakest_direction, millimetres.weakest_direction)
-    assert metres.weakest_in_words() == "the roll of the camera"
+    assert metres.weakest_in_words() == "the turn about forward"
 
 
 def test_words_name_the_notable_parts_largest_first():
-    assert in_words(NAMES, [0.5, -0.8, 0.1]) == "the roll of the camera against r_z"
-    assert in_words(NAMES, [-0.6, -0.5, -0.5]) == "r_z with the roll of the camera with the focal length"
+    assert in_words(NAMES, [0.5, -0.8, 0.1]) == "the turn about forward against r_z"
+    assert in_words(NAMES, [-0.6, -0.5, -0.5]) == "r_z with the turn about forward with the focal length"
 
 
 def test_turns_about_the_body_axes_are_the_left_small_rotation():

@@ -158,7 +158,7 @@ def test_words_where_the_pose_hides_it(changes):
     linked = told(**changes)
     assert not linked.is_identifiable()
     assert "cannot be told from the pose: 30.0 ± 4.0 ms" in linked.verdict()
-    assert linked.verdict().endswith("it goes with the pitch, correlation -0.40.")
+    assert linked.verdict().endswith("it goes with the turn about right, correlation -0.40.")
     assert "add passes in the other direction" in linked.advice()
 
 

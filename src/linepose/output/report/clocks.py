@@ -3,7 +3,7 @@
 import numpy as np
 
 from linepose.experiments.clock_offset import CLOCK_OFFSET
-from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS
+from linepose.geometry.pose import POSE_COLUMNS, SIGMA_COLUMNS, TURN_WORDS
 from linepose.output.report.sections import SectionOnPage, TableOnPage
 from linepose.pipeline.calibration import Calibration
 
@@ -29,7 +29,7 @@ def clocks_section(calibration: Calibration) -> SectionOnPage | None:
         ]
         for name, sigma in zip(POSE_COLUMNS, SIGMA_COLUMNS, strict=True)
     ]
-    turns = [[name, "", "", f"{row[f'correlation_{name}']:+.2f}"] for name in ("roll", "pitch", "yaw")]
+    turns = [[words, "", "", f"{row[f'correlation_{name}']:+.2f}"] for name, words in TURN_WORDS.items()]
     heads = ["Parameter", "Clocks taken to agree", "Offset estimated", "Correlation with the offset"]
     title = "Pose with and without the clock offset"
     sentence = f"-log L {row['neg_log_likelihood_without']:.2f} without, {row['neg_log_likelihood']:.2f} with it."

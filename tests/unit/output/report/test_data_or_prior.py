@@ -23,7 +23,7 @@ def test_who_decided_stands_in_a_table(tmp_path):
     (table,) = section.tables
     assert table.sentence == "5 decided by data, 1 decided by data and prior."
     assert table.rows[2] == ["r_z (m)", "0.0100", "0.0600", "0.1000", "0.50", "data and prior"]
-    assert table.rows[3] == ["roll of the camera (°)", "1.15", "0.92", "2.01", "0.90", "data"]
+    assert table.rows[3] == ["turn about forward (°)", "1.15", "0.92", "2.01", "0.90", "data"]
     assert "The hand measurement is a prior" in section.text
     assert table.title == "Data or prior"
 
@@ -58,7 +58,7 @@ def test_clock_offset_comes_with_both_sigmas_and_what_to_do(tmp_path):
     )
     rows = section.tables[0].rows
     assert rows[0] == ["r_x (m)", "0.1900 ± 0.0300", "0.1900 ± 0.0300", "+0.25"]
-    assert [row[0] for row in rows[6:]] == ["roll", "pitch", "yaw"]
+    assert [row[0] for row in rows[6:]] == ["turn about forward", "turn about right", "turn about down"]
 
 
 def test_an_offset_that_cannot_be_told_is_a_warning(tmp_path):
