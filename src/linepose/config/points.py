@@ -1,10 +1,13 @@
 """What is known of the points: the `points` section of a platform file."""
 
-from typing import Self
+from typing import Final, Self
 
-from pydantic import Field, PositiveFloat, model_validator
+from pydantic import Field, model_validator
 
 from linepose.settings import Settings, SettingsError
+
+SMALLEST_SIGMA_M: Final = 1e-6
+LARGEST_SIGMA_M: Final = 1e4
 
 
 class GroundSection(Settings):
@@ -14,9 +17,15 @@ class GroundSection(Settings):
     dem: str | None = Field(
         None, description="Or a height model (GeoTIFF or what else rasterio reads), in the folder of the records."
     )
-    sigma_m: PositiveFloat = Field(description="How far points lie off it, each for itself, as one sigma (m).")
-    shift_sigma_m: PositiveFloat | None = Field(
+    sigma_m: float = Field(
+        ge=SMALLEST_SIGMA_M,
+        le=LARGEST_SIGMA_M,
+        description="How far points lie off it, each for itself, as one sigma (m).",
+    )
+    shift_sigma_m: float | None = Field(
         None,
+        ge=SMALLEST_SIGMA_M,
+        le=LARGEST_SIGMA_M,
         description="How far it may lie too high or too low as a whole, as one sigma (m): estimated with the pose. "
         "Without it the heights are taken to err independently, which no height model does.",
     )
@@ -49,3 +58,8 @@ class PointsSection(Settings):
         0.0, description="Added to the control points' heights to get those of the positions (m)."
     )
     ground: GroundSection | None = Field(None, description="The ground on which all other points lie.")
+
+    @property
+    def is_on_the_earth(self) -> bool:
+        """Whether some of it is told in a reference system, so that the survey's place on the Earth is needed."""
+        return self.crs is not None or (self.ground is not None and self.ground.dem is not None)

@@ -79,18 +79,19 @@ def _sigmas(values: Mapping[str, Any], is_by_angles: bool) -> Any:
     sigmas = {name: one for name, one in sigmas.items() if one is not None or name not in _ALTERNATIVES}
     focal_m, pitch_m, n_pixels = (_number(values.get(k)) for k in ("focal_length_m", "pixel_pitch_m", "n_pixels"))
     if "focal_length_m" in sigmas or not (focal_m and pitch_m and n_pixels):
-        return given
+        return sigmas
     if "field_of_view_deg" in sigmas:
         try:
-            told = CameraSigmas.model_validate({"field_of_view_deg": sigmas.pop("field_of_view_deg")})
+            told = CameraSigmas.model_validate({"field_of_view_deg": sigmas["field_of_view_deg"]})
         except ValidationError:
-            return given
+            return sigmas
+        del sigmas["field_of_view_deg"]
         field_rad = 2 * np.arctan(n_pixels / 2 * pitch_m / focal_m)
         sigma_m = focal_m * np.deg2rad(told.field_of_view_deg or np.nan) / np.sin(field_rad)
     elif is_by_angles:
         sigma_m = _FOCAL_SHARE * focal_m
     else:
-        return given
+        return sigmas
     return sigmas | {"focal_length_m": min(float(sigma_m), LARGEST_FOCAL_SIGMA_M)}
 
 

@@ -63,7 +63,8 @@ def known_of_platform(platform: Platform, folder: Path, observations: pd.DataFra
     if not platform.knows_points:
         return {}
     section = None if platform.map_frame is None else platform.map_frame.model_dump()
-    frame = survey_frame(section, map_frame_table(platform, folder))
+    needs_frame = platform.points is not None and platform.points.is_on_the_earth
+    frame = survey_frame(section, map_frame_table(platform, folder)) if needs_frame else None
     return known_points(platform, folder, survey_from_table(observations), frame)
 
 

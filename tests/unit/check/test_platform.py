@@ -276,6 +276,11 @@ def test_simulated_platform_is_checked_before_it_is_made(project, platforms_fold
     report = check_platform("sim", project)
     assert report.level < Level.ERROR
     assert len(report.predicted) == 6
+    known = "like: sim\nnoise_model: adjustment\nexperiments: {}\ntarget: {kind: rings, known: true, sigma_m: 1.0e-3}\n"
+    (project / "config" / "platforms" / "known.yaml").write_text(known)
+    report = check_platform("known", project)
+    assert report.level < Level.ERROR
+    assert "of 15 the place on the target, to 1 mm" in "".join(one.found for one in report.findings)
 
 
 def test_planned_strips_are_checked_before_they_are_flown(project, platforms_folder):

@@ -126,6 +126,14 @@ def test_a_camera_that_is_told_twice_or_wrongly_is_refused(values, found):
         ({"field_of_view_deg": "34 deg", "principal_point_px": 9.0}, ["field_of_view_deg"]),
         ({"field_of_view_deg": 34, "principal_point_px": 9.0, "n_pixels": 0}, ["n_pixels"]),
         ({"field_of_view_deg": 34, "sigmas": {"field_of_view_deg": -1}}, ["principal_point_px", "sigmas"]),
+        (
+            {
+                "field_of_view_deg": 34,
+                "principal_point_px": 9.0,
+                "sigmas": {"field_of_view_deg": 0, "focal_length_m": None},
+            },
+            ["sigmas"],
+        ),
     ],
 )
 def test_a_fault_of_what_tells_the_scale_is_told_once(values, keys):

@@ -1,11 +1,11 @@
 """What every kind of target has: its points, what is printed of it, and how it is found."""
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self
+from typing import ClassVar, Final, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PositiveFloat, PositiveInt, model_validator
+from pydantic import Field, PositiveInt, model_validator
 
 from linepose.arrays import Floats
 from linepose.settings import Settings, SettingsError
@@ -13,6 +13,7 @@ from linepose.survey.targets.artwork import Artwork
 
 Picture = NDArray[np.uint8]  # (H, W), as seen from the board's front
 Feature = Literal["dot", "corner"]
+MOST_ROWS: Final = 100  # and columns: more than any print has whose parts a camera tells apart
 
 
 @dataclass(frozen=True)
@@ -59,15 +60,28 @@ class TargetSection(Settings):
 class GridSection(TargetSection):
     """A target of rows and columns that can be printed."""
 
+    fewest: ClassVar[int] = 1  # rows, and columns
+    of_size: ClassVar[str] = ""  # what else a number of rows and columns must be
+
     rows: PositiveInt
     columns: PositiveInt
     known: bool = Field(
         False, description="Whether its dimensions were measured and count in the adjustment; needs `sigma_m`."
     )
-    sigma_m: PositiveFloat | None = Field(
+    sigma_m: float | None = Field(
         None,
+        ge=1e-6,
+        le=1.0,
         description="How far points lie off these dimensions in each direction, as one sigma (m): print and bend.",
     )
+
+    @model_validator(mode="after")
+    def _has_a_size(self) -> Self:
+        sides = sorted((self.rows, self.columns))
+        if sides[0] < self.fewest or sides[1] > MOST_ROWS or not self.is_of_size():
+            expected = f"{self.fewest} to {MOST_ROWS} rows and columns{self.of_size}"
+            raise SettingsError(f"{self.rows} rows and {self.columns} columns", expected, "change rows or columns")
+        return self
 
     @model_validator(mode="after")
     def _is_known_to_a_sigma(self) -> Self:
@@ -75,6 +89,10 @@ class GridSection(TargetSection):
             expected = "how well the points' places are known (m), with `known: true`"
             raise SettingsError("nothing", expected, "add sigma_m", "sigma_m")
         return self
+
+    def is_of_size(self) -> bool:
+        """Whether the number of rows and columns is what `of_size` says."""
+        return True
 
     @classmethod
     def scaled(cls, rows: int | None, columns: int | None, spacing_m: float | None) -> Self:

@@ -15,7 +15,6 @@ from linepose.survey.targets.markers import dictionary, marker, n_cells, n_marke
 
 _SQUARE_M = 0.070
 _MARKER = 0.75  # of the square's side
-_FEWEST_SQUARES = 3
 _FEWEST_CORNERS = 4
 
 
@@ -24,6 +23,8 @@ class CharucoSection(RectifiedSection):
 
     title: ClassVar[str] = "a chessboard with a marker in each white square; a part of it is enough"
     feature: ClassVar[Feature | None] = "corner"
+    fewest: ClassVar[int] = 3
+    of_size: ClassVar[str] = " of squares"
 
     kind: Literal["charuco"] = Field("charuco", description="`charuco`: a chessboard with markers.")
     rows: PositiveInt = Field(7, description="Rows of squares, at least 3; one fewer row of corners.")
@@ -36,9 +37,6 @@ class CharucoSection(RectifiedSection):
 
     @model_validator(mode="after")
     def _can_be_found(self) -> Self:
-        if min(self.rows, self.columns) < _FEWEST_SQUARES:
-            found, expected = f"{self.rows} x {self.columns}", f"at least {_FEWEST_SQUARES} rows and columns of squares"
-            raise SettingsError(found, expected, "raise rows and columns")
         if self.marker_m >= self.square_m:
             found = f"marker_m {self.marker_m:g} with square_m {self.square_m:g}"
             raise SettingsError(found, "marker_m below square_m", "correct one of them")

@@ -4,15 +4,13 @@ from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PositiveFloat, PositiveInt, model_validator
+from pydantic import Field, PositiveFloat, PositiveInt
 
 from linepose.arrays import Floats
-from linepose.settings import SettingsError
 from linepose.survey.targets.artwork import Artwork, Rectangle
 from linepose.survey.targets.base import Detail, Feature, Found, Picture, RectifiedSection, grid_points, turns_of_grid
 
 _SQUARE_M = 0.060
-_FEWEST_SQUARES = 4  # of a side: OpenCV wants three inner corners
 
 
 class ChessboardSection(RectifiedSection):
@@ -20,18 +18,13 @@ class ChessboardSection(RectifiedSection):
 
     title: ClassVar[str] = "black and white squares; points are the corners between them"
     feature: ClassVar[Feature | None] = "corner"
+    fewest: ClassVar[int] = 4  # of squares: OpenCV wants three inner corners
+    of_size: ClassVar[str] = " of squares"
 
     kind: Literal["chessboard"] = Field("chessboard", description="`chessboard`: black and white squares.")
     rows: PositiveInt = Field(7, description="Rows of squares, at least 4; one fewer row of corners.")
     columns: PositiveInt = Field(9, description="Columns of squares, at least 4; one fewer column of corners.")
     square_m: PositiveFloat = Field(_SQUARE_M, description="Side of a square (m).")
-
-    @model_validator(mode="after")
-    def _can_be_found(self) -> Self:
-        if min(self.rows, self.columns) < _FEWEST_SQUARES:
-            found, expected = f"{self.rows} x {self.columns}", f"at least {_FEWEST_SQUARES} rows and columns of squares"
-            raise SettingsError(found, expected, "raise rows and columns")
-        return self
 
     @classmethod
     def scaled(cls, rows: int | None, columns: int | None, spacing_m: float | None) -> Self:

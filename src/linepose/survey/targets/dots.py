@@ -15,7 +15,6 @@ _SPACING_M = 0.060
 _DIAMETER = 0.5  # of the spacing
 _SMALLEST_AREA_PX = 8
 _LEAST_ROUND = 0.6
-_MINIMUM = 2
 
 
 class DotsSection(RectifiedSection):
@@ -23,6 +22,7 @@ class DotsSection(RectifiedSection):
 
     title: ClassVar[str] = "black dots on white in rows and columns"
     feature: ClassVar[Feature | None] = "dot"
+    fewest: ClassVar[int] = 2
 
     kind: Literal["dots"] = Field("dots", description="`dots`: black dots on white in rows and columns.")
     rows: PositiveInt = Field(7, description="Rows of dots, at least 2.")
@@ -35,9 +35,6 @@ class DotsSection(RectifiedSection):
         if self.diameter_m >= self.spacing_m:
             found = f"diameter_m {self.diameter_m:g} with spacing_m {self.spacing_m:g}"
             raise SettingsError(found, "diameter_m below spacing_m", "correct one of them")
-        if min(self.rows, self.columns) < _MINIMUM:
-            found = f"{self.rows} rows and {self.columns} columns"
-            raise SettingsError(found, f"at least {_MINIMUM} rows and columns", "raise them")
         return self
 
     @classmethod

@@ -24,6 +24,10 @@ class RingsSection(GridSection):
 
     title: ClassVar[str] = "dots within rings and a corner mark, found whatever the drive; the paper's"
     feature: ClassVar[Feature | None] = "dot"
+    fewest: ClassVar[int] = 2
+    of_size: ClassVar[str] = (
+        f", {_FEWEST_POINTS} rings or more, and not as many rows as columns, so that a mirrored scan can be told"
+    )
 
     kind: Literal["rings"] = Field("rings", description="`rings`: dots within rings and a corner mark.")
     rows: PositiveInt = Field(pattern.N_ROWS, description="Rows of rings; not as many as columns.")
@@ -43,13 +47,7 @@ class RingsSection(GridSection):
     )
 
     @model_validator(mode="after")
-    def _can_be_told_apart(self) -> Self:
-        if self.rows == self.columns:
-            expected = "another number of rows than of columns, so that a mirrored scan can be told"
-            raise SettingsError(f"{self.rows} rows and {self.columns} columns", expected, "change one of them")
-        if min(self.rows, self.columns) < 2 or self.rows * self.columns < _FEWEST_POINTS:
-            expected = f"at least two rows, two columns and {_FEWEST_POINTS} rings"
-            raise SettingsError(f"{self.rows} rows and {self.columns} columns", expected, "raise them")
+    def _are_within_each_other(self) -> Self:
         if not self.dot_diameter_m < self.ring_inner_diameter_m < self.ring_outer_diameter_m:
             found = f"{self.dot_diameter_m:g}, {self.ring_inner_diameter_m:g}, {self.ring_outer_diameter_m:g}"
             expected = "dot_diameter_m < ring_inner_diameter_m < ring_outer_diameter_m"
@@ -60,6 +58,10 @@ class RingsSection(GridSection):
             expected = "ring_outer_diameter_m below row_spacing_m and column_spacing_m"
             raise SettingsError(found, expected, "correct one of them")
         return self
+
+    def is_of_size(self) -> bool:
+        """Whether enough rings are there, and not as many rows as columns."""
+        return self.rows != self.columns and self.rows * self.columns >= _FEWEST_POINTS
 
     @classmethod
     def scaled(cls, rows: int | None, columns: int | None, spacing_m: float | None) -> Self:
