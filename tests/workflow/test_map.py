@@ -75,3 +75,4 @@ def test_lost_and_unfinished_maps_are_made_again_to_the_same_bytes(copied):
     assert kept.stat().st_mtime_ns == made_at
     again = copied.linepose("map", "tiny")
     assert again.stdout.count("(made before)") == 4
+    assert "\n4 of 4 were finished before, of the same numbers, and left as they are\n" in again.stdout

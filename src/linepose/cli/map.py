@@ -48,11 +48,15 @@ def map_scans(
     section = _with_bands(platform.map or MapSection(), bands)
     maps = platform_map(calibration, section, data)
     target = output or folder / "map"
+    n_before = 0
     for number, made in enumerate(write_maps(maps, target, cores or os.cpu_count() or 1), start=1):
+        n_before += not made.is_new
         typer.echo(f"{number} of {len(maps.paths)}: {scan_sentence(made)}")
         for line in budget_sentences(made):
             typer.echo(line)
     tell_outdated(loaded, root, name)
+    if n_before:
+        typer.echo(f"{n_before} of {len(maps.paths)} were finished before, of the same numbers, and left as they are")
     typer.echo(target)
 
 

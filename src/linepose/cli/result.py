@@ -39,10 +39,10 @@ def tables(summary: PlatformSummary, removed: Sequence[int]) -> list[RenderableT
 def plain_lines(summary: PlatformSummary, removed: Sequence[int]) -> list[str]:
     """The same as lines that a program or a log can take."""
     lines = [_title(summary), summary.verdict.sentence]
-    lines.append(f"{_HEADINGS[0]:16s}" + "".join(f"{heading:>14s}" for heading in _HEADINGS[1:]))
+    lines.append(f"{_HEADINGS[0]:16s}" + "".join(f"{heading:>15s}" for heading in _HEADINGS[1:]))
     for number in _numbers(summary):
         name, *cells = _cells(number)
-        lines.append(f"{name:16s}" + "".join(f"{cell:>14s}" for cell in cells))
+        lines.append(f"{name:16s}" + "".join(f"{cell:>15s}" for cell in cells))
     lines.append(_about(summary, removed))
     for check in summary.verdict.checks:
         lines.append(f"{_WORDS[check.level]:6s}{check.name}: {check.found}")

@@ -508,7 +508,7 @@ def test_show_tells_pose_verdict_and_where_files_are(finished):
         assert f"{value:.4f} m" in line
     assert any(line.startswith("roll") and "deg" in line for line in lines)
     assert lines[0] == "mine"
-    assert lines[2].endswith(" minus by hand in its sigmas")
+    assert lines[2].endswith("  minus by hand  in its sigmas")
     assert any("all 6 observations, each with its weight" in line for line in lines)
     assert any("half of chi squared" in line for line in lines)
     assert not any("-log L" in line for line in lines)

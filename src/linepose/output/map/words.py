@@ -7,6 +7,7 @@ import pandas as pd
 from linepose.inputs.tie_points.patches import HALF, SEARCH
 from linepose.output.map.budget import ALL
 from linepose.output.map.platform_map import ScanMap
+from linepose.output.map.rasters import GEOTIFF_ENDING
 
 _MM: int = 1000
 _MEANINGS = {
@@ -27,12 +28,13 @@ def scan_sentence(made: ScanMap) -> str:
     """One line: how sure the places are at the centre and at the edge, and what was counted of the pixels."""
     whole = made.budget[made.budget["source"] == ALL].set_index("place")["radius_95_m"].astype(float)
     radii = [f"{whole[place] * _MM:.1f} mm at the {place}" for place in ("centre", "edge") if whole[place] >= 0]
-    told = [f"{made.name}: 95 % within {', '.join(radii)}" if radii else f"{made.name}: no place on the ground"]
+    name = made.name + ("" if made.is_new else " (made before)")
+    told = [f"{name}: 95 % within {', '.join(radii)}" if radii else f"{name}: no place on the ground"]
     told += [
         f"{made.counts[key]} of {made.n_pixels} pixels {words}" for key, words in _MEANINGS.items() if made.counts[key]
     ]
     told += _of_rasters(made)
-    return "; ".join(told) + ("" if made.is_new else " (made before)")
+    return "; ".join(told)
 
 
 def budget_sentences(made: ScanMap) -> list[str]:
@@ -78,4 +80,7 @@ def _of_rasters(made: ScanMap) -> list[str]:
     placed = made.n_pixels - sum(made.counts[key] for key in _WITHOUT_PLACE)
     known = cells.n_cells + cells.n_filled
     filled = f"{cells.n_filled} of {known} cells of {cells.cell_m:g} m are filled from beside"
-    return [filled, f"{placed - cells.n_cells} pixels are not the nearest of their cell's centre"]
+    bands = ", ".join(map(str, cells.bands))
+    geotiff = [f"GeoTIFF {made.name}{GEOTIFF_ENDING} of the band{'s' if len(cells.bands) > 1 else ''} {bands}"]
+    unused = f"{placed - cells.n_cells} pixels are not the nearest of their cell's centre"
+    return [filled, unused, *(geotiff if cells.bands else [])]

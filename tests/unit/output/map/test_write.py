@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -70,7 +72,10 @@ def test_a_map_is_told_with_its_budget_and_what_was_counted():
     assert (
         "15 of 75 cells of 0.02 m are filled from beside; 30 pixels are not the nearest of their cell's centre" in told
     )
-    assert told.endswith("(made before)")
+    assert told.startswith("strip (made before): ")
+    assert "GeoTIFF" not in told
+    with_bands = replace(rasters, bands=(30, 60))
+    assert scan_sentence(replace(made, rasters=with_bands)).endswith("; GeoTIFF strip.tif of the bands 30, 60")
     centre, edge = budget_sentences(made)
     whole = made.budget.set_index(["place", "source"])["horizontal_m"].astype(float) * 1000
     assert centre.startswith(

@@ -168,3 +168,9 @@ def test_a_known_target_is_told_with_the_sigmas_with_and_without(adjusted, tmp_p
     write_table(fits.assign(target_misfit_sigmas=7.0), folder / "diagnostics.parquet", DIAGNOSTICS)
     section = adjustment_section(Calibration.from_results(folder, made_up.adjusted_platform()))
     assert "7.0 sigmas off what is seen without it, and was not used." in section.text
+
+
+def test_what_is_said_of_a_table_stands_between_its_title_and_the_table(adjusted):
+    page = page_of(adjusted)
+    assert "<h4>Levels</h4> <p>Each with its 95 % interval.</p> <div" in page
+    assert "<h4>The camera</h4> <p>One sigma each. The survey tells" in page
