@@ -151,7 +151,7 @@ def in_words(name: str, outcomes: list[Outcome], failed: int) -> str:
     seconds = [one.seconds for one in outcomes]
     parts = [
         f"{name}, {len(outcomes)} flights, {failed} failed",
-        f"RMS roll pitch yaw {numbers(1e3 * rms(error))} mrad",
+        f"RMS about forward, right, down {numbers(1e3 * rms(error))} mrad",
         f"median {numbers(1e3 * np.median(np.abs(error), axis=0) / 0.6745)}",
         f"stated {numbers(1e3 * rms(sigma))}",
         f"ratio {numbers(rms(error / sigma))}",

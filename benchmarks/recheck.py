@@ -21,6 +21,7 @@ from linepose.arrays import Floats
 from linepose.config.platform import Platform, load_platform
 from linepose.estimation.pose_change import FALSE_ALARMS, GROUPS, WHOLE, PoseChange
 from linepose.estimation.recheck import recheck
+from linepose.geometry.pose import TURN_WORDS
 from linepose.simulation.drawn_camera import drawn_camera
 from linepose.simulation.noise_levels import NoiseLevels
 from linepose.simulation.noisy_survey import draw_survey
@@ -31,7 +32,7 @@ CALIBRATED = tuple(range(7)) + tuple(range(13, 25))  # passes of the drive
 NEW = (0, 2, 4, 13, 15, 17)
 LEVELS = NoiseLevels(platform_error=True, intrinsics_level=0.0)  # the intrinsics are drawn once for both
 QUICK = AdjustmentSection(n_draws=20, n_samples=10)
-MOVES = ("forward", "right", "down", "roll", "pitch", "yaw")
+MOVES = ("forward", "right", "down", *TURN_WORDS.values())
 
 
 @dataclass(frozen=True)

@@ -69,7 +69,7 @@ def main(n_surveys: int) -> None:
     platform = load_platform(Path(__file__).parents[1] / "config" / "platforms", "ladybird-sim")
     assert platform.simulation is not None
     camera, start = platform.intrinsics(), platform.start_pose()
-    print("| layout | r_x (mm) | r_y (mm) | r_z (mm) | roll (°) | pitch (°) | yaw (°) |")
+    print("| layout | r_x (mm) | r_y (mm) | r_z (mm) | about forward (°) | about right (°) | about down (°) |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     with ProcessPoolExecutor() as pool:
         for name, settings in layouts(without_faults(platform.simulation)).items():
