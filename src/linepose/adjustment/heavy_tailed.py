@@ -13,14 +13,23 @@ from linepose.adjustment.reml import Restricted, most_likely, shortened
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.solve import solve
 from linepose.adjustment.state import Knowledge, State
-from linepose.adjustment.tails import TailKind, TailWeights, bound_of_weights, expected_weights, unit_tail_weights
+from linepose.adjustment.tails import (
+    TailKind,
+    TailWeights,
+    bound_of_weights,
+    expected_weights,
+    unit_tail_weights,
+    with_gross_errors,
+)
 from linepose.errors import EstimationError
 
 SCREEN_NATS: Final = {  # by which heavy tails may look worse at the normal model's estimate and are yet tried
     TailKind.CONSTANTS: 4.0,
     TailKind.VIEWS: 10.0,
     TailKind.MEASUREMENTS: 10.0,
+    TailKind.GROSS_ERRORS: 10.0,  # at the estimate with tails of single measurements
 }
+_TRIED: Final = (TailKind.CONSTANTS, TailKind.VIEWS, TailKind.MEASUREMENTS)
 SINGLE_NATS: Final = 40.0  # by which tails of single measurements must win: their many weights are taken for known
 _WEIGHT_TOLERANCE: Final = 0.03  # of a logarithm
 _LEVEL_TOLERANCE: Final = 0.02  # of a logarithm
@@ -55,7 +64,7 @@ def with_tails(
         return normal
     candidates = [normal] if normal is not None else []
     unsettled: list[tuple[Estimate, TailWeights]] = []
-    for kind in _promising(normal) if normal is not None and _is_sound(normal, guided) else TailKind:
+    for kind in _promising(normal) if normal is not None and _is_sound(normal, guided) else _TRIED:
         tails = unit_tail_weights(measurements, kind)
         try:
             heavy, tails = _heavy_tailed(measurements, guided, start, settings.start, tails, settings)
@@ -66,6 +75,8 @@ def with_tails(
         except EstimationError as error:
             failure = failure or error
             continue
+        if kind == TailKind.MEASUREMENTS:
+            heavy, tails = _or_gross_errors(measurements, knowledge, heavy, tails, settings)
         candidates.append(heavy)
         if not heavy.converged:
             unsettled.append((heavy, tails))
@@ -76,6 +87,20 @@ def with_tails(
         if _preference(one) > _preference(best):
             candidates.append(_settled(measurements, knowledge, one, tails, settings))
     return _best(candidates, guided)
+
+
+def _or_gross_errors(
+    measurements: Measurements, knowledge: Knowledge, one: Estimate, tails: TailWeights, settings: AdjustmentSettings
+) -> tuple[Estimate, TailWeights]:
+    """A heavy-tailed estimate, or that with gross errors where these have more evidence, if any is in sight."""
+    begun = with_gross_errors(tails)
+    if _evidence_in_sight(one, begun) < one.log_evidence - SCREEN_NATS[TailKind.GROSS_ERRORS]:
+        return one, tails
+    try:
+        found = _heavy_tailed(measurements, knowledge, one.solution.state, one.levels, begun, settings)
+    except EstimationError:
+        return one, tails
+    return found if found[0].log_evidence > one.log_evidence else (one, tails)
 
 
 def _best(candidates: list[Estimate], guided: Knowledge) -> Estimate:
@@ -111,16 +136,21 @@ def _preference(one: Estimate) -> float:
 
 def _promising(normal: Estimate) -> list[TailKind]:
     """The tails that are not so much worse at the normal model's estimate that they need not be tried."""
-    restricted = normal.restricted
-    measurements, found = restricted.measurements, []
-    for kind in TailKind:
-        tails = unit_tail_weights(measurements, kind)
-        for _ in range(_SCREEN_SWEEPS):
-            tails = expected_weights(measurements, normal.solution.model, normal.levels, tails)
-        density = replace(restricted, weights=tails.applied(measurements)).negative_log_density(normal.log_levels)
-        if bound_of_weights(measurements, tails) - density > normal.log_evidence - SCREEN_NATS[kind]:
-            found.append(kind)
-    return found
+    measurements = normal.restricted.measurements
+    return [
+        kind
+        for kind in _TRIED
+        if _evidence_in_sight(normal, unit_tail_weights(measurements, kind)) > normal.log_evidence - SCREEN_NATS[kind]
+    ]
+
+
+def _evidence_in_sight(one: Estimate, tails: TailWeights) -> float:
+    """The evidence of other weights at the pose and levels of an estimate."""
+    measurements = one.restricted.measurements
+    for _ in range(_SCREEN_SWEEPS):
+        tails = expected_weights(measurements, one.solution.model, one.levels, tails)
+    weighted = replace(one.restricted, weights=tails.applied(measurements))
+    return bound_of_weights(measurements, tails) - weighted.negative_log_density(one.log_levels)
 
 
 def _heavy_tailed(

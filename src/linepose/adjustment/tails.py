@@ -18,9 +18,10 @@ levels becomes a lower bound of the heavy-tailed model's evidence,
 which compares with the normal model's own, and tells tails of constants from those of whole views and of single
 measurements too. The bound of fewer weights is the tighter one. Where
 the normal model explains the data as well, it stands, and no sigma is lost to weights that nothing asks for.
+Where many measurements are bad, `gross_errors` has another distribution of their single weights.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Final
 
@@ -28,6 +29,12 @@ import numpy as np
 from scipy.special import digamma, gammaln
 
 from linepose.adjustment.gradient import slopes_of_density
+from linepose.adjustment.gross_errors import (
+    GrossErrors,
+    bound_of_gross_errors,
+    expected_gross_errors,
+    first_gross_errors,
+)
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.measurements import Measurements
 from linepose.adjustment.process import Weights
@@ -36,27 +43,30 @@ from linepose.adjustment.thresholds import DEGREES_OF_FREEDOM, MEASUREMENT_DIMEN
 from linepose.arrays import Floats
 
 CONSTANT_DIMENSION: Final = 6
+_LIGHT: Final = 0.04  # of a measurement that errs five times as far as others
 
 
 class TailKind(IntEnum):
-    """What has heavy tails: a view's constant; its noise too; each measurement's noise too."""
+    """What has heavy tails: a view's constant; its noise too; each measurement's noise too, or many gross errors."""
 
     CONSTANTS = 0
     VIEWS = 1
     MEASUREMENTS = 2
+    GROSS_ERRORS = 3
 
 
 @dataclass(frozen=True)
 class TailWeights:
     """Expected weights: of each view's constant (N,) and of its noise (N,), of each measurement alone (L,).
 
-    kind: what has tails; the weights of all else are one.
+    kind: what has tails; the weights of all else are one. gross: what single weights are made of, with gross errors.
     """
 
     constant: Floats
     noise: Floats
     single: Floats
     kind: TailKind
+    gross: GrossErrors | None = None
 
     def applied(self, measurements: Measurements) -> Weights:
         """As the error process takes them."""
@@ -69,6 +79,14 @@ def unit_tail_weights(measurements: Measurements, kind: TailKind) -> TailWeights
     return TailWeights(of_views, of_views, np.ones(len(measurements.u_px)), kind)
 
 
+def with_gross_errors(tails: TailWeights) -> TailWeights:
+    """The weights with those of single measurements begun anew: gross errors, as many and large as those now light."""
+    light = tails.single < _LIGHT
+    share = float(np.clip(np.mean(light), 1 / (len(light) + 1), 0.5))
+    gross = first_gross_errors(len(light), share, 1 / np.sqrt(_LIGHT))
+    return replace(tails, kind=TailKind.GROSS_ERRORS, single=tails.single, gross=gross)
+
+
 def expected_weights(measurements: Measurements, model: Model, levels: Levels, before: TailWeights) -> TailWeights:
     """One step of expectation maximisation at a linear model."""
     weights = before.applied(measurements)
@@ -78,12 +96,15 @@ def expected_weights(measurements: Measurements, model: Model, levels: Levels, b
     of_noise = np.maximum(MEASUREMENT_DIMENSION - slopes.by_measurement, 0.0) / weights.of_measurement
     view, nu = measurements.view, DEGREES_OF_FREEDOM
     together = np.bincount(view, weights=before.single * of_noise, minlength=measurements.n_views)
-    noise, single = before.noise, before.single
+    noise, single, gross = before.noise, before.single, before.gross
     if before.kind >= TailKind.VIEWS:
         noise = (nu + MEASUREMENT_DIMENSION * _counts(measurements)) / (nu + together)
-    if before.kind >= TailKind.MEASUREMENTS:
+    if gross is not None:
+        gross = expected_gross_errors(noise[view] * of_noise, gross)
+        single = gross.weight
+    elif before.kind == TailKind.MEASUREMENTS:
         single = (nu + MEASUREMENT_DIMENSION) / (nu + noise[view] * of_noise)
-    return TailWeights((nu + CONSTANT_DIMENSION) / (nu + of_constant), noise, single, before.kind)
+    return TailWeights((nu + CONSTANT_DIMENSION) / (nu + of_constant), noise, single, before.kind, gross)
 
 
 def bound_of_weights(measurements: Measurements, weights: TailWeights) -> float:
@@ -93,6 +114,8 @@ def bound_of_weights(measurements: Measurements, weights: TailWeights) -> float:
         of_views += _bound(weights.noise, MEASUREMENT_DIMENSION * _counts(measurements))
     if weights.kind < TailKind.MEASUREMENTS:
         return of_views
+    if weights.gross is not None:
+        return of_views + bound_of_gross_errors(weights.gross)
     return of_views + _bound(weights.single, np.full(len(weights.single), MEASUREMENT_DIMENSION))
 
 
