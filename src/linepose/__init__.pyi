@@ -15,6 +15,7 @@ from .pipeline.calibrate import CalibrationSettings as CalibrationSettings
 from .pipeline.calibrate import calibrate as calibrate
 from .pipeline.calibration import Calibration as Calibration
 from .pipeline.comparison import Comparison as Comparison
+from .pipeline.comparison import compare as compare
 from .pipeline.recheck import Recheck as Recheck
 from .pipeline.recheck import recheck_platform as recheck_platform
 from .survey.hand_measured import HandMeasured as HandMeasured

@@ -52,9 +52,41 @@ _TRUE_POINT_COLUMNS: Final = [f"point_{name}" for name in POSITION_COLUMNS]
 class Calibration:
     """The camera's pose on the vehicle and how sure it is; what `calibrate` returns and a results folder holds.
 
-    `results` has the tables it rests on, `stage` says of which the pose is: `inliers`, `all`, `hand_measured`, or
-    `observations_N`. `platform` is the platform's file where there is one, `data_folder` what it recorded. Everything
-    else is read from these when it is first asked for; a table that cannot be used then raises InputError.
+    All else is read from the tables when it is first asked for; one that cannot be used then raises InputError.
+
+    Parameters
+    ----------
+    results : Results
+        The tables that it rests on, in memory or as files of results/NAME.
+    hand_measured : HandMeasured
+        The pose by tape measure (m, deg), where the search started.
+    camera : Camera
+        Intrinsic parameters as they were given; `own_camera` has those that were estimated.
+    threshold_px : float
+        Of the outlier removal (px), where the noise model has one.
+    noise_model : str
+        The model by which the pose was estimated.
+    stage : str
+        Of which the pose is: `inliers`, `all`, `hand_measured`, or `observations_N`.
+    platform : Platform, optional
+        The platform's file, where there is one.
+    data_folder : Path, optional
+        What the platform recorded.
+
+    Attributes
+    ----------
+    pose : ndarray of shape (6,)
+        Camera in the body frame: forward, right, down (m), rotation vector camera to body (rad).
+    covariance : ndarray of shape (6, 6)
+        Of the pose, m and rad.
+    matrix : ndarray of shape (4, 4)
+        Takes points of the camera frame to the body frame (m).
+
+    Examples
+    --------
+    >>> calibration = linepose.calibrate_platform("myrobot")
+    >>> calibration.pose.shape, calibration.covariance.shape, calibration.stage
+    ((6,), (6, 6), 'inliers')
     """
 
     results: Results

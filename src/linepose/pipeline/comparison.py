@@ -24,11 +24,31 @@ from linepose.pipeline.calibration import HAND_MEASURED, Calibration
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """How a second calibration differs from a first.
+    """How a second calibration differs from a first; what `compare` returns.
 
-    `difference` (6,) and its `covariance` (6, 6): m, and turn (rad) about body axes; `pixels`: one row a place on the
-    line, with the shift along and across it (m) and sigmas; `shares_hand_measurement`: whether both rest on the same;
-    `n_shared_measurements`: on which both rest, with any of which there is no p-value.
+    Parameters
+    ----------
+    names : tuple of str
+        Of the first and the second.
+    difference : ndarray of shape (6,)
+        Forward, right, down (m), and turn about these axes (rad).
+    covariance : ndarray of shape (6, 6)
+        Of the difference, m and rad.
+    range_m : float
+        At which a pixel's place on the ground is compared (m).
+    pixels : pandas.DataFrame
+        One row a place on the line: its shift along and across the line (m) with sigmas.
+    shares_hand_measurement : bool
+        Whether both rest on the same one, which then counts once.
+    n_shared_measurements : int
+        On which both rest; with any there is no p-value.
+
+    Examples
+    --------
+    >>> calibration = linepose.calibrate_platform("myrobot")
+    >>> comparison = linepose.compare(calibration, calibration, range_m=3.0)
+    >>> comparison.difference.tolist(), comparison.n_shared_measurements == len(calibration.observations)
+    ([0.0, 0.0, 0.0, 0.0, 0.0, 0.0], True)
     """
 
     names: tuple[str, str]
@@ -79,10 +99,32 @@ def _finite(table: pd.DataFrame) -> dict[str, dict[str, float | None]]:
 
 
 def compare(first: Calibration, second: Calibration, range_m: float) -> Comparison:
-    """What leads from the first calibration to the second, and what a pixel's place moves at a range (m).
+    """What leads from a first calibration to a second, and by how much a pixel's place on the ground moves.
 
-    A hand measurement that is the same prior of both counts once; all else is taken as independent. Raises InputError
-    for a range that is none, and for cameras of different lines.
+    A hand measurement that is the same prior of both counts once; all else is taken as independent.
+
+    Parameters
+    ----------
+    first, second : Calibration
+        Of cameras with equally many pixels.
+    range_m : float
+        Distance of the ground from the camera (m).
+
+    Returns
+    -------
+    Comparison
+        The difference (m, rad) with its covariance, and the move of pixels (m).
+
+    Raises
+    ------
+    InputError
+        The range is none, or the cameras have different lines.
+
+    Examples
+    --------
+    >>> calibration = linepose.calibrate_platform("myrobot")
+    >>> linepose.compare(calibration, calibration, range_m=3.0).shares_hand_measurement
+    True
     """
     if not (np.isfinite(range_m) and range_m > 0):
         raise InputError("range", f"{range_m} m", "a distance above 0", "give that of the ground from the camera")

@@ -33,10 +33,38 @@ _SAME_SIGMAS: Final = 0.1  # by which the calibration may differ from what its o
 
 @dataclass(frozen=True, eq=False)
 class Recheck:
-    """What new views say of a calibration.
+    """What new views say of a calibration; what `recheck_platform` returns.
 
-    `change`: the move with its information, in m and rad about body axes; `false_alarms`: how often a camera that has
-    not moved is told to have; `warnings`: why the numbers may not be trusted, one line each.
+    Parameters
+    ----------
+    name : str
+        Of the platform.
+    n_calibrated, n_views : int
+        Observations that the calibration rests on, and new ones.
+    change : PoseChange
+        The move (m, and rad about body axes) with its information.
+    false_alarms : float
+        How often a camera that has not moved is told to have.
+    warnings : tuple of str
+        Why the numbers may not be trusted, one line each.
+
+    Attributes
+    ----------
+    holds : bool
+        Whether the views agree with the calibration.
+    sees : bool
+        Whether they could have seen any move at all.
+
+    Examples
+    --------
+    The views of the calibration itself are none to check it by:
+
+    >>> linepose.calibrate_platform("myrobot").write("results/myrobot")
+    >>> try:
+    ...     recheck = linepose.recheck_platform("myrobot", "data/myrobot")
+    ... except linepose.InputError as error:
+    ...     print(error.remedy)
+    leave these views out of the folder
     """
 
     name: str

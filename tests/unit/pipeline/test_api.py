@@ -1,5 +1,6 @@
 """The Python interface: arrays in, pose and sigmas out; every example of README and docs/api.md runs."""
 
+import dataclasses
 import doctest
 import inspect
 import re
@@ -30,6 +31,7 @@ SHORT = linepose.SamplingSettings(n_walkers=24, n_burn_in=40, n_steps=60)
 QUICK = linepose.CalibrationSettings(adjustment=linepose.AdjustmentSection(n_draws=50, n_samples=1000))
 N_PASSES = 16
 FUNCTIONS = [name for name in linepose.__all__ if inspect.isfunction(getattr(linepose, name))]
+RESULTS = ["Calibration", "Comparison", "Recheck"]
 IN_EXAMPLES = {"linepose": linepose, "np": np}
 BY_HAND = linepose.HandMeasured(position_m=(0.2, 0.0, -0.8), euler_deg=(-56.0, 0.0, -90.0))
 
@@ -298,7 +300,7 @@ def test_observations_of_a_platform_are_those_of_its_files(simulated, myrobot):
     assert_allclose(observations["covariance_yaw_yaw"], expected["covariance_yaw_yaw"], rtol=1e-6)
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("name", [*FUNCTIONS, *RESULTS])
 def test_example_of_a_docstring_runs(name, myrobot):
     (example,) = doctest.DocTestFinder(recurse=False).find(getattr(linepose, name), name, globs=IN_EXAMPLES)
     assert example.examples
@@ -314,7 +316,14 @@ def test_docstring_tells_parameters_results_and_errors(name):
     for heading in ("Parameters", "Returns", "Raises", "Examples"):
         assert f"\n{heading}\n{'-' * len(heading)}\n" in docstring
     for parameter in inspect.signature(function).parameters:
-        assert re.search(rf"^{parameter} : ", docstring, re.MULTILINE), parameter
+        assert re.search(rf"^([a-z_, ]+, )?{parameter}(, [a-z_, ]+)? : ", docstring, re.MULTILINE), parameter
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_docstring_of_a_result_tells_its_fields(name):
+    docstring = inspect.getdoc(getattr(linepose, name))
+    for one in dataclasses.fields(getattr(linepose, name)):
+        assert re.search(rf"^([a-z_, ]+, )?{one.name}(, [a-z_, ]+)? : ", docstring, re.MULTILINE), one.name
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/api.md"])
