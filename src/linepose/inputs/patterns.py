@@ -39,12 +39,16 @@ Dataset = Annotated[str, AfterValidator(_is_folder)]
 def matching(folder: Path, pattern: str) -> list[Path]:
     """The files of a folder that a name or a pattern is of, sorted by name; a file of just this name comes first.
 
-    Raises InputError where one has a name that the workflow cannot have.
+    Raises InputError where one has a name that the workflow cannot have, or is a device or pipe, which has no end.
     """
     exact = folder / pattern
-    if _SIGNS.search(pattern) and exact.exists():
-        return [exact]
-    found = sorted(folder.glob(pattern))
+    is_name = bool(_SIGNS.search(pattern)) and exact.exists()
+    found = [exact] if is_name else sorted(folder.glob(pattern))
+    for path in found:
+        if path.exists() and not path.is_file() and not path.is_dir():
+            raise InputError(str(path), "a device or pipe", "a file", "put the file itself there")
+    if is_name:
+        return found
     for path in found:
         if any(sign in path.relative_to(folder).as_posix() for sign in "{}"):
             expected = "a name without braces, in which the workflow would look for its own words"

@@ -1,3 +1,5 @@
+import os
+
 import pytest
 
 from linepose.errors import InputError
@@ -32,3 +34,10 @@ def test_a_file_with_braces_is_told(tmp_path):
     (tmp_path / "run{1}.hdr").touch()
     with pytest.raises(InputError, match="rename the file"):
         matching(tmp_path, "*.hdr")
+
+
+def test_a_pipe_is_told_before_it_is_read(tmp_path):
+    os.mkfifo(tmp_path / "run.hdr")
+    for pattern in ("run.hdr", "*.hdr"):
+        with pytest.raises(InputError, match=r"run.hdr: found a device or pipe, expected a file"):
+            matching(tmp_path, pattern)

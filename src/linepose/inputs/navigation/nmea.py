@@ -3,7 +3,8 @@
 Positions are of GGA, whose height above the geoid gets its separation, attitudes of PASHR: roll, pitch and true heading
 (where it has none, that of the HDT before it). Positions at the times of the attitudes are linear between two GGA.
 Covariances are those of GST (position) and PASHR (angles). RMC or ZDA say the day. VTG's course is no heading and is
-not used.
+not used. PTNL,AVR of a Trimble receiver with two antennas has a yaw and one tilt alone: it is no attitude, and is told
+where there is no other.
 """
 
 import datetime
@@ -64,6 +65,7 @@ class _Rows:
     without_fix: int = 0
     without_height: int = 0
     nowhere: int = 0
+    of_two_antennas: int = 0
     position_sigma: list[float] = field(default_factory=lambda: [np.nan] * 3)
     heading: float = np.nan
 
@@ -107,8 +109,7 @@ def _read_file(path: Path, section: NmeaSection) -> tuple[Poses, Covariances]:
             remedy = "let the receiver write the height and the geoid's separation (words 9 and 11 of GGA)"
         raise InputError(str(path), found, "two or more", remedy)
     if not len(attitude_us):
-        found, expected = "no PASHR with roll, pitch and heading", "an attitude"
-        raise InputError(str(path), found, expected, "log PASHR too, or read another log of the navigation system")
+        raise _no_attitude(path, rows)
     place = f"{path}, PASHR"
     between = positions_between(attitude_us, fix_us, fixes, section.maximum_fix_gap_s, place)
     times, values = attitude_us[between.near], attitudes[between.near]
@@ -116,6 +117,15 @@ def _read_file(path: Path, section: NmeaSection) -> tuple[Poses, Covariances]:
     known = np.all(values[:, 3:] > 0, axis=1)
     sigma = values[known, 3:] * [1, 1, 1, *[np.pi / 180] * 3]
     return poses, Covariances(times[known], axes.diagonal_covariance(sigma), place)
+
+
+def _no_attitude(path: Path, rows: _Rows) -> InputError:
+    found, expected = "no PASHR with roll, pitch and heading", "an attitude"
+    if not rows.of_two_antennas:
+        return InputError(str(path), found, expected, "log PASHR too, or read another log of the navigation system")
+    found += f", but {rows.of_two_antennas} PTNL,AVR: yaw and one tilt of the line between two antennas"
+    remedy = "log PASHR too, or read the log of an IMU: two antennas cannot tell all three angles"
+    return InputError(str(path), found, expected, remedy)
 
 
 def _table(rows: list[Any], width: int = 3) -> np.ndarray:
@@ -143,6 +153,8 @@ def _add(rows: _Rows, sentence: Sentence) -> None:
         return
     elif kind == "GGA":
         _add_fix(rows, sentence.time_us, content)
+    elif sentence.words[:2] == ("PTNL", "AVR"):
+        rows.of_two_antennas += 1
     elif kind == "ASHRATT":
         angles = [_number(getattr(content, name)) for name in _ANGLES]
         angles[2] = rows.heading if np.isnan(angles[2]) else angles[2]

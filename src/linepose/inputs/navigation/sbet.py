@@ -6,6 +6,7 @@ The heading is counted from the wander frame; true heading = platform heading - 
 is 10 doubles: seconds of the week, north, east, down (m), three velocities, roll, pitch, heading (arc minutes).
 """
 
+import logging
 from pathlib import Path
 from typing import Any, Final, Literal
 
@@ -23,6 +24,8 @@ from linepose.inputs.patterns import Files, matching
 _TRAJECTORY: Final = 17
 _RMS: Final = 10
 _ARC_MINUTE: Final = np.pi / 180 / 60
+
+log = logging.getLogger(__name__)
 
 
 class SbetSection(GeodeticSection):
@@ -44,7 +47,7 @@ class SbetSection(GeodeticSection):
 
 
 def read(section: SbetSection, folder: Path) -> NavigationRecord:
-    """The record of the trajectory; raises InputError naming a file that is cut, or has another format."""
+    """The record of the trajectory; raises InputError naming a file without a record, or of another format."""
     poses = [_poses(path, section.gps_week) for path in section.paths(folder)]
     rms = section.model_copy(update={"file": section.rms}).paths(folder) if section.rms else []
     covariances = [_covariances(path, section.gps_week) for path in rms]
@@ -79,14 +82,22 @@ def _unix(path: Path, table: Floats, week: int | None) -> np.ndarray:
 
 
 def _records(path: Path, n_values: int, what: str) -> Floats:
-    """The records (K, n_values) of a file, mapped; what they hold is checked for the wrong format."""
+    """The whole records (K, n_values) of a file, mapped; a last one that was cut is passed over, and told.
+
+    What they hold is checked for the wrong format.
+    """
     size, record = path.stat().st_size, 8 * n_values
-    if not size or size % record:
-        found = f"{size} bytes, {size // record} whole records and {size % record} bytes more"
+    count, left_out = divmod(size, record)
+    table: Floats = (
+        np.memmap(path, dtype="<f8", mode="r", shape=(count, n_values)) if count else np.empty((0, n_values))
+    )
+    time_s = table[:, 0]
+    if not count or (left_out and np.any(np.diff(time_s) < 0)):
+        found = f"{size} bytes, {count} whole records and {left_out} bytes more"
         remedy = "restore the file: it was cut or is of another format"
         raise InputError(str(path), found, f"{what}: a multiple of {record} bytes", remedy)
-    table: Floats = np.memmap(path, dtype="<f8", mode="r").reshape(-1, n_values)
-    time_s = table[:, 0]
+    if left_out:
+        log.warning("%s: the file is cut: %d bytes after its %d whole records are passed over", path, left_out, count)
     for row in np.flatnonzero(~np.isfinite(time_s) | (time_s < 0) | (time_s > 2 * gps_time.WEEK_US / 1e6))[:1]:
         found = f"{time_s[row]:g} as its time"
         raise InputError(f"{path}, record {row + 1}", found, f"{what}: seconds of the GPS week", "check the format")

@@ -261,6 +261,11 @@ def test_what_is_left_out_is_counted(tmp_path, caplog):
         ("a,b\n1,2\n", {"date": DAY}, r"log.nmea: found no NMEA sentence, expected lines that begin with \$"),
         ("".join(drive()), {}, r"found no sentence with a date \(RMC, ZDA\).*; set source.navigation.date"),
         (gga(1) + gga(2), {"date": DAY}, r"log.nmea: found no PASHR with roll, pitch and heading"),
+        (
+            gga(1) + sentence("PTNL,AVR,100001.00,+149.4688,Yaw,+0.0134,Tilt,,,60.191,3,2.5,6") + gga(2),
+            {"date": DAY},
+            r"but 1 PTNL,AVR: yaw and one tilt of the line .*; log PASHR too, or read the log of an IMU",
+        ),
         (gga(1) + pashr(1), {"date": DAY}, r"log.nmea: found 1 GGA with a fix, expected two or more"),
         (
             gga(1).split("*")[0].replace("22.500", ""),

@@ -30,9 +30,10 @@ def test_real_trajectory(samples):
 
 
 @pytest.mark.devices
-def test_real_trajectory_cut_by_a_byte_is_refused(samples):
-    with pytest.raises(InputError, match=r"badfile.sbet: found 271 bytes, 1 whole records and 135 bytes more.*restore"):
+def test_real_trajectory_of_two_records_cut_by_a_byte_is_refused(samples, caplog):
+    with pytest.raises(InputError, match=r"badfile.sbet: found 1 poses, expected two or more"):
         read_navigation(section(file="sbet/badfile.sbet", gps_week=1774), samples)
+    assert "badfile.sbet: the file is cut: 135 bytes after its 1 whole records are passed over" in caplog.text
 
 
 def test_heading_is_true_whatever_the_wander_angle(tmp_path, drive):
@@ -59,7 +60,11 @@ def test_week_is_that_of_the_scans(tmp_path, drive):
     ("file", "keys", "told"),
     [
         ("a.sbet", {"file": "b.sbet"}, r"b.sbet: found no such file"),
-        ("a.rms", {"rms": "a.rms"}, r"a.rms: found 9591 bytes.*an RMS file \(smrmsg\): a multiple of 80 bytes"),
+        (
+            "other",
+            {},
+            r"a.sbet: found 9591 bytes, 70 whole records and 71 bytes more.*a multiple of 136 .*another format",
+        ),
         ("a.sbet", {}, r"record 1: found nan as its time"),
         ("degrees", {}, r"a.sbet, record 1: found latitude -1941.71, longitude 8662.76 deg"),
         ("empty", {}, r"a.sbet: found 0 bytes"),
@@ -69,8 +74,8 @@ def test_broken_file_is_one_line(tmp_path, drive, file, keys, told):
     writers.write_sbet(tmp_path / "a.sbet", drive)
     writers.write_rms(tmp_path / "a.rms", drive)
     table = np.fromfile(tmp_path / "a.sbet").reshape(-1, 17)
-    if file == "a.rms":
-        (tmp_path / file).write_bytes((tmp_path / file).read_bytes()[:-9])
+    if file == "other":
+        (tmp_path / "a.sbet").write_bytes((tmp_path / "a.rms").read_bytes()[:-9])
     elif file == "a.sbet" and not keys:
         table[0, 0] = np.nan
         table.tofile(tmp_path / file)
@@ -82,6 +87,22 @@ def test_broken_file_is_one_line(tmp_path, drive, file, keys, told):
     with pytest.raises(InputError, match=told) as error:
         read_navigation(section(gps_week=int(drive.week[0]), origin=ORIGIN, **keys), tmp_path)
     assert "\n" not in str(error.value)
+
+
+def test_what_was_cut_within_a_record_is_read_up_to_it(tmp_path, drive, caplog):
+    writers.write_sbet(tmp_path / "a.sbet", drive)
+    writers.write_rms(tmp_path / "a.rms", drive)
+    (tmp_path / "a.sbet").write_bytes((tmp_path / "a.sbet").read_bytes()[:-9])
+    (tmp_path / "a.rms").write_bytes((tmp_path / "a.rms").read_bytes()[:-81])
+    record = read_navigation(section(gps_week=int(drive.week[0]), origin=ORIGIN, rms="a.rms"), tmp_path)
+    np.testing.assert_array_equal(record.log.time_us, drive.time_us[:-1])
+    np.testing.assert_array_equal(record.covariances.time_us, drive.time_us[:-2])
+    count = len(drive.time_us)
+    for told in (
+        f"a.sbet: the file is cut: 127 bytes after its {count - 1}",
+        "a.rms: the file is cut: 79 bytes after",
+    ):
+        assert told in caplog.text
 
 
 def test_every_file_is_one_that_the_workflow_watches(tmp_path, drive):
