@@ -5,19 +5,21 @@ import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked
+
+_LONGEST_HEADING: Final = 10_000  # characters
 
 log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class LabelFormat:
-    """The tool's name, the ending of its files, whether a JSON's content is of it, and how a file is read.
+    """The tool's name, the ending of its files, whether a file's content is of it, and how a file is read.
 
-    `read` gets the path and the content, None of a file that is not JSON.
+    `recognises` and `read` get the content of JSON, the first line of CSV, None of any other file.
     """
 
     tool: str
@@ -33,6 +35,12 @@ def read_json(path: Path) -> Any:
     except (ValueError, RecursionError, OSError) as error:
         found = " ".join(str(error).split())[:200]
         raise InputError(str(path), found, "labels in JSON", "restore the file") from None
+
+
+def read_heading(path: Path) -> str:
+    """The first line of a text, as far as it can be a heading."""
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        return file.readline(_LONGEST_HEADING).strip()
 
 
 def entries(value: Any) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Reading labels by the ending of their files, and of JSON by what is in it.
+"""Reading labels by the ending of their files, and of JSON and CSV by what is in it.
 
 Inside, u_px and line are whole numbers at the centres of pixels and lines. The tools count from the picture's upper
 left corner, so that the first pixel's centre is at 0.5: half a pixel is subtracted from their coordinates.
@@ -6,12 +6,13 @@ left corner, so that the first pixel's centre is at 0.5: half a pixel is subtrac
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked, labels_of
-from linepose.inputs.labels.format import read_json
+from linepose.inputs.labels.format import LabelFormat, read_heading, read_json
 from linepose.inputs.labels.labels import read_labels
 from linepose.inputs.labels.registry import FORMATS
 from linepose.inputs.patterns import matching
@@ -26,9 +27,9 @@ def read_point_labels(
     `point_id` is the place of the points' names, see `point_of`. Raises InputError naming the file and the label that
     has no scan, no name, or is given twice.
     """
-    if Path(pattern).suffix.lower() == ".csv":
-        return read_labels(folder / pattern, list(scans))
     paths = matching(folder, pattern)
+    if Path(pattern).suffix.lower() == ".csv" and not any(path.is_file() and _format_of(path)[0] for path in paths):
+        return read_labels(folder / pattern, list(scans))
     if not paths:
         remedy = "restore it, correct source.labels, or set source.points: detection"
         raise InputError(str(folder / pattern), "no such file", "approximate labels", remedy)
@@ -42,15 +43,23 @@ def read_point_labels(
 
 def _read(path: Path) -> list[Clicked]:
     """The labels of one file, in whichever format it is."""
+    one, content = _format_of(path)
+    if one is not None:
+        return one.read(path, content)
     suffix = path.suffix.lower()
     formats = [one for one in FORMATS if one.suffix == suffix]
     if not formats:
         expected = f"one of {', '.join(sorted({'.csv', *(one.suffix for one in FORMATS)}))}"
         raise InputError(str(path), f"file type {path.suffix!r}", expected, "export the labels in one of these")
-    content = read_json(path) if suffix == ".json" else None
-    for one in formats:
-        if one.recognises(content):
-            return one.read(path, content)
     tools = ", ".join(one.tool for one in formats)
     remedy = "export the labels in one of these, or correct source.labels"
-    raise InputError(str(path), "JSON of another kind", f"that of one of {tools}", remedy)
+    found = f"{suffix[1:].upper()} of another kind"
+    raise InputError(str(path), found, f"that of one of {tools}", remedy)
+
+
+def _format_of(path: Path) -> tuple[LabelFormat | None, Any]:
+    """The format that a file is in, None where it is in none, and its content as the format takes it."""
+    suffix = path.suffix.lower()
+    content = read_json(path) if suffix == ".json" else read_heading(path) if suffix == ".csv" else None
+    formats = [one for one in FORMATS if one.suffix == suffix and one.recognises(content)]
+    return (formats[0] if formats else None), content

@@ -1,5 +1,7 @@
 """Files as COCO, Label Studio and VIA have them, made up: two scans, points 0 and gate, and what is passed over."""
 
+import csv
+import io
 import json
 from copy import deepcopy
 from pathlib import Path
@@ -9,6 +11,7 @@ from PIL import Image
 
 from linepose.errors import InputError
 from linepose.inputs.labels import read_point_labels
+from linepose.inputs.labels.format import entries
 
 SCANS = {1: Path("scans/run-01.hdr"), 3: Path("scans/run-03.bil.hdr")}
 COCO = {
@@ -94,6 +97,44 @@ def test_points_by_name_and_what_is_passed_over(tmp_path, content, told, caplog)
     labels = read(tmp_path, content)
     assert labels.to_numpy().tolist() == [[1, "0", 10, 20], [3, "0", 1, 2], [3, "gate", 100, 30]]
     assert f"labels.json: passed over: {told}" in caplog.text
+
+
+def via_csv(mark="", shape=None):
+    """The same as VIA's CSV has it, with another shape in the first row."""
+    rows = [
+        [picture["filename"], picture["size"], "{}", len(regions), k, *(json.dumps(one) for one in region.values())]
+        for picture in VIA["_via_img_metadata"].values()
+        for regions in [list(entries(picture["regions"]))]
+        for k, region in enumerate(regions)
+    ]
+    rows[0][5] = rows[0][5] if shape is None else shape
+    heading = "filename,file_size,file_attributes,region_count,region_id,region_shape_attributes,region_attributes"
+    text = io.StringIO()
+    csv.writer(text).writerows([*rows, ["run-02.png", 5, "{}", 0, 0, "{}", "{}"]])
+    return f"{mark}{heading}\r\n{text.getvalue()}"
+
+
+@pytest.mark.parametrize("mark", ["", "#", "\ufeff"])
+def test_vias_csv_is_read_as_its_json(tmp_path, mark, caplog):
+    (tmp_path / "via.csv").write_text(via_csv(mark), encoding="utf-8")
+    labels = read_point_labels(tmp_path, "via.csv", SCANS, 640)
+    assert labels.to_numpy().tolist() == [[1, "0", 10, 20], [3, "0", 1, 2], [3, "gate", 100, 30]]
+    assert "via.csv: passed over: 1 regions that are no points" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (via_csv(shape="{"), r"row 2, region_shape_attributes: found '\{', expected a mapping"),
+        (via_csv(shape='{"name": "point"}'), r"run-01.png, region 1: found cx=None, expected cx and cy in pixels"),
+        (via_csv() + "run-03.png,1,2\r\n", r"via.csv, row 7: found 3 cells, expected 7"),
+    ],
+)
+def test_vias_csv_that_cannot_be_used_is_one_line(tmp_path, text, told):
+    (tmp_path / "via.csv").write_text(text)
+    with pytest.raises(InputError, match=told) as error:
+        read_point_labels(tmp_path, "via.csv", SCANS, 640)
+    assert "\n" not in str(error.value)
 
 
 def test_label_studio_in_per_cent_with_names_in_labels_or_a_control(tmp_path, caplog):
