@@ -40,6 +40,18 @@ class NavigationFormatSection(Settings):
         return None
 
 
+def correct_keys(section: NavigationFormatSection | None, names: Sequence[str], otherwise: str) -> str:
+    """The remedy of correcting those of these keys that the format has, of its log of attitudes where that has them.
+
+    `otherwise` where it has none of them.
+    """
+    beside = getattr(section, "attitude_log", None)
+    at, keys = ("source.navigation", section) if beside is None else ("source.navigation.attitude_log", beside)
+    *first, last = ["", *(name for name in names if name in getattr(type(keys), "model_fields", ()))]
+    together = " or ".join(one for one in (", ".join(first[1:]), last) if one)
+    return f"correct {at}.{together}" if together else otherwise
+
+
 class GeodeticSection(NavigationFormatSection):
     """Keys of the formats whose positions are latitude, longitude and ellipsoidal height (WGS 84)."""
 

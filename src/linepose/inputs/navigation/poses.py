@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.local_frame import check_geodetic
+from linepose.inputs.navigation.format import NavigationFormatSection, correct_keys
 from linepose.inputs.navigation.usable_rows import placed, usable_rows
 
 _EARLIEST_US, _LATEST_US = 315_964_800_000_000, 4_102_444_800_000_000  # 1980 to 2100
+_TIME_KEYS = ("time_unit", "time_scale", "gps_week", "date")
 
 
 @dataclass(frozen=True)
@@ -77,8 +79,11 @@ def check_places(part: Poses) -> None:
         check_geodetic(by_number, part.place)
 
 
-def check_poses(part: Poses) -> None:
-    """Raise InputError where there is no pose, or naming the first of no possible time or angle, or out of order."""
+def check_poses(part: Poses, section: NavigationFormatSection | None) -> None:
+    """Raise InputError where there is no pose, or naming the first of no possible time or angle, or out of order.
+
+    `section`: the keys of the log's format, which may mend it.
+    """
     if not len(part.time_us):
         raise InputError(part.place, "no pose", "a log of poses", "restore the log")
     for row in np.flatnonzero((part.time_us < _EARLIEST_US) | (part.time_us > _LATEST_US))[:1]:
@@ -86,10 +91,10 @@ def check_poses(part: Poses) -> None:
             part.place_of(row),
             f"time {part.time_us[row]} us since 1970",
             "a time between 1980 and 2100",
-            "correct the time's unit, scale or week in source.navigation",
+            correct_keys(section, _TIME_KEYS, "restore the log"),
         )
     for row in np.flatnonzero(np.any(np.abs(part.euler_rad) > 2 * np.pi + 1e-9, axis=1))[:1]:
-        remedy = "correct the unit of the angles in source.navigation"
+        remedy = correct_keys(section, ["angle_unit"], "restore the log")
         found = f"roll, pitch, yaw {', '.join(f'{one:g}' for one in part.euler_rad[row])} rad"
         raise InputError(part.place_of(row), found, "at most a full turn", remedy)
     check_increasing(part.time_us, part.place, part.numbers)

@@ -21,7 +21,7 @@ from linepose.inputs.local_frame import (
     tangent_frame,
     utm_crs,
 )
-from linepose.inputs.navigation.format import GeodeticSection
+from linepose.inputs.navigation.format import GeodeticSection, NavigationFormatSection, correct_keys
 from linepose.inputs.navigation.poses import (
     Poses,
     check_increasing,
@@ -71,13 +71,18 @@ class Covariances:
     place: str
 
 
-def local_record(poses: Sequence[Poses], covariances: Sequence[Covariances]) -> NavigationRecord:
-    """The record of files with positions in metres; raises InputError naming a broken record."""
+def local_record(
+    poses: Sequence[Poses], covariances: Sequence[Covariances], section: NavigationFormatSection | None = None
+) -> NavigationRecord:
+    """The record of files with positions in metres; raises InputError naming a broken record.
+
+    `section`: the keys of the format, of which those that may mend a record are named.
+    """
     for one in poses:
         check_numbers(one)
-    both = _joined_poses([usable_poses(one) for one in poses])
+    both = _joined_poses([usable_poses(one) for one in poses], section)
     log = _log(both, both.position, both.euler_rad)
-    return NavigationRecord(log, _joined_covariances(covariances))
+    return NavigationRecord(log, _joined_covariances(covariances, section))
 
 
 def geodetic_record(
@@ -91,13 +96,13 @@ def geodetic_record(
     poses = [usable_poses(one) for one in poses]
     for one in poses:
         check_places(one)
-    both = _joined_poses([placed_poses(one) for one in poses])
+    both = _joined_poses([placed_poses(one) for one in poses], section)
     frame = _frame(section, both.position[0])
     position, euler = _in_frame(frame, both)
     if not np.all(np.isfinite(position)):
         place = both.place_of(int(np.flatnonzero(~np.all(np.isfinite(position), axis=1))[0]))
         raise InputError(place, f"a place outside {frame.crs}", "one inside it", "correct source.navigation.crs")
-    at_poses = _joined_covariances(covariances)
+    at_poses = _joined_covariances(covariances, section)
     if at_poses is not None:
         at_poses = NavigationCovariances(at_poses.time_us, _turned(frame, both, at_poses), at_poses.source)
     log = _log(both, position, euler)
@@ -173,9 +178,9 @@ def nearest_rows(time_us: NDArray[np.int64], wanted_us: NDArray[np.int64]) -> ND
     return np.where(np.abs(time_us[after] - wanted_us) < np.abs(time_us[before] - wanted_us), after, before)
 
 
-def _joined_poses(parts: Sequence[Poses]) -> Poses:
+def _joined_poses(parts: Sequence[Poses], section: NavigationFormatSection | None) -> Poses:
     for part in parts:
-        check_poses(part)
+        check_poses(part, section)
     ordered = sorted(parts, key=lambda part: int(part.time_us[0]))
     gps_time.tell_lost_weeks(int(ordered[0].time_us[0]), ordered[0].place)
     for before, after in pairwise(ordered):
@@ -207,7 +212,9 @@ def _not_repeated(time_us: NDArray[np.int64], values: Floats) -> NDArray[np.bool
     return kept
 
 
-def _joined_covariances(parts: Sequence[Covariances]) -> NavigationCovariances | None:
+def _joined_covariances(
+    parts: Sequence[Covariances], section: NavigationFormatSection | None
+) -> NavigationCovariances | None:
     filled = sorted((part for part in parts if len(part.time_us)), key=lambda part: int(part.time_us[0]))
     if not filled:
         return None
@@ -226,6 +233,6 @@ def _joined_covariances(parts: Sequence[Covariances]) -> NavigationCovariances |
     lowest = np.min(np.diagonal(covariance, axis1=1, axis2=2), axis=1)
     for row in np.flatnonzero(~np.all(np.isfinite(covariance), axis=(1, 2)) | (lowest < 0))[:1]:
         place, found = f"{filled[0].place}, covariance {row + 1}", "a sigma or variance that is negative or no number"
-        remedy = "remove the record, or correct which columns hold the sigmas"
+        remedy = correct_keys(section, ["columns"], "remove the record")
         raise InputError(place, found, "36 finite numbers, variances at least 0", remedy)
     return NavigationCovariances(time_us, covariance, ", ".join(dict.fromkeys(part.place for part in filled)))

@@ -94,7 +94,7 @@ def read(section: RosbagSection, folder: Path) -> NavigationRecord:
             part, is_geodetic = _part(bag, path, section)
         parts.append(part)
     poses, covariances = [part[0] for part in parts], [part[1] for part in parts]
-    return geodetic_record(poses, covariances, section) if is_geodetic else local_record(poses, covariances)
+    return geodetic_record(poses, covariances, section) if is_geodetic else local_record(poses, covariances, section)
 
 
 def _is_bag(path: Path) -> dict[str, Any] | None:

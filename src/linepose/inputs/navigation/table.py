@@ -141,7 +141,7 @@ def read(section: TableSection, folder: Path) -> NavigationRecord:
     frame = None if section.crs is None else projected_frame(section.crs)
     if section.origin is not None:
         frame = tangent_frame(section.origin)
-    record = local_record(poses, covariances)
+    record = local_record(poses, covariances, section)
     return record if frame is None else replace(record, crs=frame.crs, origin=frame.origin)
 
 

@@ -67,6 +67,17 @@ def test_week_is_that_of_the_scans(tmp_path, drive):
         ),
         ("a.sbet", {}, r"record 1: found nan as its time"),
         ("degrees", {}, r"a.sbet, record 1: found latitude -1941.71, longitude 8662.76 deg"),
+        (
+            "turned",
+            {},
+            r"a.sbet, record 2: found roll, pitch, yaw 9, .* rad, expected at most a full turn; restore the log$",
+        ),
+        (
+            "week",
+            {"gps_week": 9999},
+            r"a.sbet, record 1: found time .*, expected .*; correct source.navigation.gps_week$",
+        ),
+        ("sigma", {"rms": "a.rms"}, r"a.rms, covariance 1: found .* or no number, expected .*; remove the record$"),
         ("empty", {}, r"a.sbet: found 0 bytes"),
     ],
 )
@@ -82,10 +93,17 @@ def test_broken_file_is_one_line(tmp_path, drive, file, keys, told):
     elif file == "degrees":
         table[:, 1:3] = np.rad2deg(table[:, 1:3])
         table.tofile(tmp_path / "a.sbet")
+    elif file == "turned":
+        table[1, 7] = 9.0
+        table.tofile(tmp_path / "a.sbet")
+    elif file == "sigma":
+        rms = np.fromfile(tmp_path / "a.rms").reshape(-1, 10)
+        rms[0, 1] = np.nan
+        rms.tofile(tmp_path / "a.rms")
     elif file == "empty":
         (tmp_path / "a.sbet").write_bytes(b"")
     with pytest.raises(InputError, match=told) as error:
-        read_navigation(section(gps_week=int(drive.week[0]), origin=ORIGIN, **keys), tmp_path)
+        read_navigation(section(**{"gps_week": int(drive.week[0]), "origin": ORIGIN} | keys), tmp_path)
     assert "\n" not in str(error.value)
 
 
