@@ -12,7 +12,8 @@ from linepose.adjustment.thresholds import (
     TRUSTED_EIGENVALUE,
     TRUSTED_SHAPE,
 )
-from linepose.pipeline.checks import AdjustedEvidence, Check, Evidence, Level, LostMeasurement
+from linepose.estimation.identifiability import WORDS
+from linepose.pipeline.checks import CAMERA_SIGMAS, AdjustedEvidence, Check, Evidence, Level, LostMeasurement
 
 _MANY: Final = 3  # one view in so many may be far off
 _NAMED: Final = 5  # measurements in a message
@@ -78,6 +79,24 @@ def curvature(adjusted: AdjustedEvidence) -> Check:
         f"{found} Below {TRUSTED_EIGENVALUE} the sigmas are not to be trusted.",
         "Add observations from other sides and with other tilts.",
         "the sigmas rest on a direction that is hardly known",
+    )
+
+
+def camera(adjusted: AdjustedEvidence) -> Check:
+    """Whether the intrinsics agree with the platform's file."""
+    name = WORDS.get(adjusted.camera_parameter, adjusted.camera_parameter)
+    if adjusted.camera_sigmas == 0:
+        return Check("Camera", Level.GOOD, "The camera is taken from the platform's file: the survey does not test it.")
+    found = f"Of the camera {name} lies {adjusted.camera_sigmas:.1f} sigmas from the platform's file"
+    if adjusted.camera_sigmas <= CAMERA_SIGMAS:
+        return Check("Camera", Level.GOOD, f"{found}, as far as the survey tests it.")
+    return Check(
+        "Camera",
+        Level.CARE,
+        f"{found}: the survey contradicts it.",
+        "Check section camera against the data sheet or the lens's calibration (focal length, pixel pitch, field of "
+        "view, binning), and how well camera.sigmas says that it is known; a wrong camera moves the pose.",
+        f"{name} is {adjusted.camera_sigmas:.1f} sigmas from the platform's file",
     )
 
 

@@ -15,6 +15,7 @@ from linepose.tables import floats, optional_floats, texts
 
 NAMES: Final = (*ALWAYS_ESTIMATED, *COEFFICIENTS)
 IDENTIFIABLE_SHARE: Final = 0.5  # of the prior's sigma, below which the survey has told an intrinsic
+_LEAST_GAIN: Final = 0.02  # of the variance, below which that of the draws of the levels hides it
 _COVARIANCE: Final = tuple(f"covariance_with_{name}" for name in NAMES)
 _BY: Final = tuple(
     f"{step}_by_one" for step in ("forward_m", "right_m", "down_m", "turn_x_rad", "turn_y_rad", "turn_z_rad")
@@ -59,6 +60,17 @@ class AdjustedIntrinsics:
     def is_told(self) -> np.ndarray:
         """Whether the survey told each (I,): the sigma is less than `IDENTIFIABLE_SHARE` of the prior's."""
         return self.sigma < IDENTIFIABLE_SHARE * self.prior_sigma
+
+    @property
+    def moved_sigmas(self) -> Floats:
+        """How far each (I,) lies from its prior, in sigmas of how far what the survey says of it lets it move.
+
+        The estimate of a linear problem lies off the prior's mean by the difference of prior and posterior variance.
+        0 where the survey says next to nothing of it.
+        """
+        gain = 1 - (self.sigma / self.prior_sigma) ** 2
+        moved = (self.estimate - self.prior) / self.prior_sigma / np.sqrt(np.maximum(gain, _LEAST_GAIN))
+        return np.where(gain < _LEAST_GAIN, 0.0, moved)
 
     def camera(self, given: Camera) -> Camera:
         """The camera of a platform's file with these in place of the file's."""

@@ -21,6 +21,7 @@ NEAR_THRESHOLD: Final = 0.9  # share of the outlier threshold from which the wor
 HAND_SIGMAS: Final = 3.0  # from the hand measurement, in sigmas of the difference
 CONTRADICTION_SIGMAS: Final = 6.0  # from which on a hand measurement that counts is wrong, and the pose with it
 TRUTH_SIGMAS: Final = 3.0
+CAMERA_SIGMAS: Final = 3.0  # of an intrinsic from the platform's file
 
 
 class Level(IntEnum):
@@ -56,7 +57,8 @@ class AdjustedEvidence:
     least_eigenvalue: of the curvature in units of the normal equations, NaN where it could not be had; effective_draws,
     pareto_shape: of the levels; drift_known: whether there are times, without which drift is not allowed for;
     navigation_error: of the whole navigation error, in what is reported; lost: single measurements that have lost
-    their weight, the lightest first, and n_measurements: of how many they are.
+    their weight, the lightest first, and n_measurements: of how many they are; camera_sigmas: of the intrinsic
+    that lies farthest from the platform's file, camera_parameter.
     """
 
     least_eigenvalue: float
@@ -68,6 +70,8 @@ class AdjustedEvidence:
     lost: tuple[LostMeasurement, ...] = ()
     n_measurements: int = 0
     target_misfit: float | None = None
+    camera_sigmas: float = 0.0
+    camera_parameter: str = ""
 
 
 @dataclass(frozen=True)

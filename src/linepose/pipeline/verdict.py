@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from linepose.pipeline.adjusted_checks import curvature, doubtful_views, draws, error_size, known_target, times
+from linepose.pipeline.adjusted_checks import camera, curvature, doubtful_views, draws, error_size, known_target, times
 from linepose.pipeline.checks import (
     Check,
     Evidence,
@@ -51,7 +51,7 @@ def judge(evidence: Evidence) -> Verdict:
     else:
         adjusted = evidence.adjusted
         checks += [doubtful_views(evidence, adjusted), angular_diversity(evidence), curvature(adjusted)]
-        checks += [hand_measurement(evidence), error_size(adjusted), draws(adjusted), times(adjusted)]
+        checks += [hand_measurement(evidence), camera(adjusted), error_size(adjusted), draws(adjusted), times(adjusted)]
         if adjusted.target_misfit is not None:
             checks.append(known_target(adjusted.target_misfit))
     checks.append(reported_sigmas(evidence))

@@ -141,6 +141,7 @@ def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
     ("change", "name", "level", "advice"),
     [
         ({"least_eigenvalue": 0.29}, "Curvature", Level.BAD, "Add observations"),
+        ({"camera_sigmas": 3.1, "camera_parameter": "focal_length_m"}, "Camera", Level.CARE, "field of view, binning"),
         ({"effective_draws": 19.0}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
         ({"drift_known": False}, "Times", Level.CARE, "Give the times"),
         ({"least_eigenvalue": float("nan")}, "Curvature", Level.BAD, "other checks"),
@@ -168,6 +169,14 @@ def test_each_fault_of_an_adjustment_is_named_with_what_to_do(change, name, leve
     assert (check.level, verdict.level) == (level, level)
     assert advice in check.advice
     assert verdict.reasons == (check,)
+
+
+def test_a_camera_is_told_to_fit_as_far_as_the_survey_tests_it():
+    fits = {"camera_sigmas": 2.9, "camera_parameter": "focal_length_m"}
+    check = named(judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, **fits))), "Camera")
+    assert check.level == Level.GOOD
+    assert check.found.startswith("Of the camera the focal length lies 2.9 sigmas from the platform's file")
+    assert "the survey does not test it" in named(judge(ADJUSTED), "Camera").found
 
 
 def test_a_known_target_that_fits_is_told():
@@ -202,3 +211,11 @@ def test_a_measurement_that_has_lost_its_weight_is_told_by_its_points_name(tmp_p
     write_table(lighter, tmp_path / "adjusted_measurements.parquet", MEASUREMENTS)
     verdict = Calibration.from_results(tmp_path, made_up.adjusted_platform()).verdict()
     assert "point 3 of observation 1 (0.05)" in named(verdict, "Weights").found
+
+
+def test_the_camera_of_the_results_is_held_against_the_platforms_file(tmp_path):
+    made_up.write_adjusted_results(tmp_path)
+    check = named(Calibration.from_results(tmp_path, made_up.adjusted_platform()).verdict(), "Camera")
+    # 4 px off with a prior of 2 px, of which the survey leaves 0.3 px
+    expected = 4.0 / np.sqrt(2.0**2 - 0.3**2)
+    assert f"Of the camera the principal point lies {expected:.1f} sigmas" in check.found
