@@ -38,7 +38,7 @@ def follow_snakemake(
     """Run a workflow as `run_snakemake` does, with its messages in a file and told one by one to `hear`.
 
     With `hear_bar` its jobs take the error stream for a terminal and draw progress bars there, which are told to it
-    and not kept.
+    and not kept. Raises OSError naming the file, after the run's end, where it could not take them all.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     source, sink = os.pipe() if hear_bar is None else _terminal()
@@ -46,14 +46,14 @@ def follow_snakemake(
         child = _start(snakefile, root, ["--nocolor", *arguments], sink)
     finally:
         os.close(sink)
-    with log.open("w", 1, encoding="utf-8") as file, contextlib.closing(_Source(source)) as told:
+    with contextlib.closing(_Log(log)) as file, contextlib.closing(_Source(source)) as told:
         try:
-            _hear_all(told.pieces(), file.write, hear, hear_bar)
+            _hear_all(told.pieces(), file.keep, hear, hear_bar)
             return child.wait()
         except KeyboardInterrupt:  # which a terminal sends to the child too; it goes on telling until it has ended
             end = threading.Timer(_PATIENCE_S, child.kill)
             end.start()
-            _hear_all(told.pieces(), file.write, lambda _: None, None)
+            _hear_all(told.pieces(), file.keep, lambda _: None, None)
             child.wait()
             end.cancel()
             return BY_KEYBOARD
@@ -71,6 +71,32 @@ def _terminal() -> tuple[int, int]:
     source, sink = os.openpty()
     termios.tcsetwinsize(sink, _ROWS_AND_COLUMNS)
     return source, sink
+
+
+class _Log:
+    """A file of messages; one that it cannot take, as on a full disk, and those after it are not kept."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._file = path.open("w", 1, encoding="utf-8")
+        self._fault: OSError | None = None
+
+    def keep(self, message: str) -> None:
+        """Write a message, unless one before it could not be."""
+        if self._fault is None:
+            try:
+                self._file.write(message)
+            except OSError as error:
+                self._fault = error
+
+    def close(self) -> None:
+        """End the file; raises the OSError of a message that could not be kept, with the file's name."""
+        try:
+            self._file.close()
+        except OSError as error:
+            self._fault = self._fault or error
+        if self._fault is not None:
+            raise OSError(self._fault.errno, os.strerror(self._fault.errno or 0), str(self._path))
 
 
 class _Source:

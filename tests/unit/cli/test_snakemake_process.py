@@ -6,6 +6,7 @@ import pytest
 
 from linepose.cli import snakemake_process
 from linepose.cli.snakemake_process import BY_KEYBOARD, follow_snakemake
+from linepose.errors import one_line
 
 CHILD = """
 import sys
@@ -67,3 +68,13 @@ def test_a_job_finds_a_terminal_in_which_its_bar_has_room(child, monkeypatch):
     assert any("1/2" in bar for bar in bars)
     assert max(map(len, bars)) < 80
     assert heard == []
+
+
+def test_a_run_whose_log_has_no_room_is_followed_to_its_end(child, tmp_path):
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs" / "run.log").symlink_to("/dev/full")
+    heard = []
+    with pytest.raises(OSError, match="No space left") as fault:
+        child(heard.append)
+    assert heard[-1] == "last words"
+    assert "run.log: found no space left on device, expected a disk to write to; make room" in one_line(fault.value)
