@@ -31,7 +31,7 @@ def brown(camera: "Camera", place: str, *, has_k3: bool) -> Brown:
     """
     import numpy as np
 
-    ray = _rays(camera, place)
+    ray = all_rays(camera, place)
     if camera.view_angles is None and (has_k3 or camera.k3 == 0):
         pair = float(camera.focal_length_px), float(camera.principal_point_px)
         found = Brown(*pair, camera.k1, camera.k2, 0.0 - camera.smile, camera.p2, camera.k3)
@@ -46,13 +46,13 @@ def brown(camera: "Camera", place: str, *, has_k3: bool) -> Brown:
 
 def require_straight(camera: "Camera", place: str, words: str) -> None:
     """Raise InputError for a camera whose line is tilted or bent, which the format named by `words` cannot state."""
-    off_px = float(abs(_rays(camera, place)[:, 1]).max()) * camera.focal_length_px
+    off_px = float(abs(all_rays(camera, place)[:, 1]).max()) * camera.focal_length_px
     if off_px > FARTHEST_PX:
         found = f"a line that lies {off_px:.2f} px off a straight one"
         raise InputError(f"camera of {place}", found, f"{FARTHEST_PX} px or less for {words}", _REMEDY)
 
 
-def _rays(camera: "Camera", place: str) -> "Floats":
+def all_rays(camera: "Camera", place: str) -> "Floats":
     """Rays (P, 3) of all pixels; raises InputError where one has none."""
     import numpy as np
 
