@@ -18,6 +18,7 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.local_frame import LocalFrame, local_from_geodetic
 from linepose.inputs.number_files import check_cells, check_commas
+from linepose.inputs.text_files import check_text
 from linepose.survey.point_knowledge import PointKnowledge
 from linepose.survey.point_names import WHAT, nameless
 
@@ -58,6 +59,7 @@ def read_control_points(
 def _table(path: Path) -> pd.DataFrame:
     if not path.is_file():
         raise InputError(str(path), "no such file", "a table of control points", _REMEDY)
+    check_text(path, "a table of control points")
     try:
         table = pd.read_csv(path, dtype=str, skipinitialspace=True, keep_default_na=False)
     except (UnicodeDecodeError, pd.errors.ParserError, pd.errors.EmptyDataError) as error:

@@ -10,6 +10,7 @@ import pandas as pd
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
+from linepose.inputs.text_files import check_text
 
 _OTHER_SIGNS: Final = {";": "semicolons", "\t": "tabs"}
 
@@ -48,6 +49,7 @@ def _read(path: Path, n_columns: int, n_first: int, what: str) -> tuple[Whole, l
     """First column, text of the second, and the columns after the first `n_first` as floats."""
     if not path.is_file():
         raise InputError(str(path), "no such file", what, "restore it, or correct the platform file")
+    check_text(path, what)
     try:
         lines = path.read_text(encoding="utf-8").rstrip().splitlines()
     except UnicodeDecodeError:

@@ -1,11 +1,13 @@
-"""Small text files that a person writes and a platform's file names."""
+"""Text files that a platform's file names: small ones that a person writes, and whether a large one is text."""
 
+import codecs
 from pathlib import Path
 from typing import Final
 
 from linepose.errors import InputError
 
 _MOST_BYTES: Final = 10_000_000
+_FIRST_BYTES: Final = 4096
 
 
 def small_text(path: Path, what: str, key: str) -> str:
@@ -30,3 +32,11 @@ def small_text(path: Path, what: str, key: str) -> str:
     if "\0" in text:
         raise InputError(str(path), "bytes that are no text in UTF-8", what, "save it as UTF-8")
     return text
+
+
+def check_text(path: Path, what: str) -> None:
+    """Raise InputError where a file begins with bytes that are no text, before all of a large one is read."""
+    with path.open("rb") as file:
+        head = file.read(_FIRST_BYTES)
+        if b"\0" in head and not head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            raise InputError(str(path), "bytes that are not text", what, "give the file itself, saved as UTF-8 text")

@@ -1,3 +1,5 @@
+import contextlib
+
 import numpy as np
 import pytest
 
@@ -6,6 +8,7 @@ from linepose.inputs.control_points import read_control_points
 from linepose.inputs.labels.labels import read_labels
 from linepose.inputs.navigation.log_file import read_navigation_log
 from linepose.inputs.number_files import check_microseconds, read_numbers
+from linepose.inputs.text_files import check_text
 
 WHAT = "time (us), a, b"
 
@@ -113,3 +116,10 @@ def test_tables_tell_other_signs_between_cells(csv, read, heading, sign, name):
     path = csv(f"{heading}1,2,3,4\n".replace(",", sign).replace("4", "4,5"))
     with pytest.raises(InputError, match=f"numbers.csv: found {name} between cells, expected commas"):
         read(path)
+
+
+def test_bytes_that_are_no_text_are_told_before_all_are_read(tmp_path):
+    for content, is_text in ((b"1,2\n", True), (b"\xff\xfe1\x00", True), (b"1,2\n\x00\x00", False)):
+        (tmp_path / "a.csv").write_bytes(content)
+        with contextlib.nullcontext() if is_text else pytest.raises(InputError, match="found bytes that are"):
+            check_text(tmp_path / "a.csv", "numbers")

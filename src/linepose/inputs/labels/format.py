@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked
+from linepose.inputs.text_files import check_text
 
 _LONGEST_HEADING: Final = 10_000  # characters
 
@@ -30,6 +31,7 @@ class LabelFormat:
 
 def read_json(path: Path) -> Any:
     """The content of a JSON file; raises InputError where it is none."""
+    check_text(path, "labels in JSON")
     try:
         return json.loads(path.read_text(encoding="utf-8-sig"))
     except (ValueError, RecursionError, OSError) as error:

@@ -10,6 +10,7 @@ import pandas as pd
 from linepose.errors import InputError, quoted
 from linepose.inputs.number_files import check_cells, check_commas
 from linepose.inputs.scans.scan_files import Scan
+from linepose.inputs.text_files import check_text
 from linepose.survey.point_names import WHAT, nameless, point_names
 
 _COLUMNS: Final = ("observation", "point", "u_px", "line")
@@ -23,6 +24,7 @@ def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
     """
     if not path.is_file():
         raise InputError(str(path), "no such file", "approximate labels", "restore it, or set source.points: detection")
+    check_text(path, "approximate labels")
     try:
         table = pd.read_csv(path, dtype={"point": str}, skipinitialspace=True)
     except (ValueError, OSError, OverflowError) as error:

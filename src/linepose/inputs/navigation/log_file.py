@@ -11,6 +11,7 @@ from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs.navigation.usable_rows import usable_rows
 from linepose.inputs.number_files import check_commas, check_microseconds
+from linepose.inputs.text_files import check_text
 from linepose.survey.navigation_log import NavigationLog
 from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 from linepose.tables import read_parquet
@@ -46,6 +47,7 @@ def _read_columns(path: Path) -> pa.Table:
         if path.suffix == ".parquet":
             table = read_parquet(path)
         else:
+            check_text(path, "a CSV table of poses")
             with path.open(encoding="utf-8", errors="replace") as file:
                 check_commas(file.readline().split(","), path)
             table = pa_csv.read_csv(path, convert_options=pa_csv.ConvertOptions(column_types=types))

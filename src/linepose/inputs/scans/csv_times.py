@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from linepose.errors import InputError
 from linepose.inputs import gps_time
+from linepose.inputs.text_files import check_text
 
 _BRIEFLY: Final = 60
 _WHOLE: Final = "a whole number of microseconds"
@@ -35,6 +36,7 @@ def read_times(path: Path) -> tuple[NDArray[np.int64], int]:
     """
     if not path.is_file():
         raise InputError(str(path), "no such file", "the time stamp of each line", "put it beside the scan")
+    check_text(path, "a time stamp a row")
     rows = [row.strip().strip('"') for row in _text(path).splitlines() if row.strip()]
     heading = int(bool(rows) and bool(re.match(r"[A-Za-z_]", rows[0])))
     cells = rows[heading:]
