@@ -12,6 +12,7 @@ from linepose.errors import InputError
 from linepose.inputs import gps_time
 from linepose.inputs.gps_time import TimeScale
 from linepose.inputs.number_files import plain_float
+from linepose.inputs.text_files import check_text
 
 _FEWEST_COLUMNS: Final = 7
 
@@ -52,8 +53,9 @@ def location_rows(path: Path) -> Floats:
 
 
 def _lines(path: Path) -> list[str]:
+    expected, remedy = "a location file (.lcf)", "correct source.navigation.format"
+    check_text(path, expected, remedy)
     try:
         return path.read_text(encoding="utf-8-sig").rstrip().splitlines()
     except UnicodeDecodeError:
-        expected = "a location file (.lcf)"
-        raise InputError(str(path), "bytes that are no text", expected, "correct source.navigation.format") from None
+        raise InputError(str(path), "bytes that are not text", expected, remedy) from None

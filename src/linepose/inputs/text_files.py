@@ -34,9 +34,9 @@ def small_text(path: Path, what: str, key: str) -> str:
     return text
 
 
-def check_text(path: Path, what: str) -> None:
+def check_text(path: Path, what: str, remedy: str = "give the file itself, saved as UTF-8 text") -> None:
     """Raise InputError where a file begins with bytes that are no text, before all of a large one is read."""
     with path.open("rb") as file:
         head = file.read(_FIRST_BYTES)
         if b"\0" in head and not head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            raise InputError(str(path), "bytes that are not text", what, "give the file itself, saved as UTF-8 text")
+            raise InputError(str(path), "bytes that are not text", what, remedy)

@@ -15,6 +15,7 @@ import pandas as pd
 from pydantic import Field, PositiveInt, field_validator
 
 from linepose.errors import InputError
+from linepose.inputs.text_files import check_text
 from linepose.settings import Settings
 
 _LINES_ABOVE: Final = 2_000  # within which the first row of values must stand
@@ -89,7 +90,10 @@ def read_text(
 
 def first_lines(path: Path, encoding: str) -> list[str]:
     """The first lines of a text file without their ends; raises UnicodeError for another encoding."""
-    with path.open(encoding="utf-8-sig" if encoding.lower() in {"utf-8", "utf8"} else encoding) as file:
+    is_utf_8 = encoding.lower() in {"utf-8", "utf8"}
+    if is_utf_8:
+        check_text(path, "a table of text")
+    with path.open(encoding="utf-8-sig" if is_utf_8 else encoding) as file:
         return [line.rstrip("\r\n") for line in islice(file, _LINES_ABOVE)]
 
 

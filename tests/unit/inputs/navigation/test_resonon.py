@@ -60,7 +60,7 @@ def test_broken_file_is_one_line(tmp_path, content, told):
 
 def test_bytes_that_are_no_text_are_told(tmp_path):
     (tmp_path / "a.lcf").write_bytes(b"\xaaD\x13\xff\x00")
-    with pytest.raises(InputError, match=r"a.lcf: found bytes that are no text"):
+    with pytest.raises(InputError, match=r"a.lcf: found bytes that are not text"):
         read_navigation(SECTION, tmp_path)
 
 
