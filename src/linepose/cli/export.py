@@ -30,7 +30,7 @@ def export(
         str, typer.Option(help="flu or frd: forward, left, up or forward, right, down.", show_default="of the format")
     ] = "",
     scan: Annotated[
-        str, typer.Option(help="Name of the scan, of formats that hold one.", show_default="the only one")
+        str, typer.Option(help="Name of the scan, of formats that hold scans.", show_default="the only one, or all")
     ] = "",
     stage: Annotated[str, typer.Option(help="inliers, all, or hand_measured.")] = "inliers",
     _: Annotated[

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from linepose.errors import InputError
 from linepose.output.exports.brown import FARTHEST_PX, require_straight
+from linepose.output.exports.scans_on_earth import camera_on_earth, earth_fixed_places, maps_of, number_of
 from linepose.pipeline.exports.format import ExportFormat
 from linepose.pipeline.exports.options import ExportOptions
 
@@ -20,12 +21,10 @@ if TYPE_CHECKING:
     from linepose.arrays import Floats
     from linepose.geometry.camera import Camera
     from linepose.output.map.places import ScanOnMap
-    from linepose.output.map.platform_map import PlatformMap
     from linepose.pipeline.calibration import Calibration
 
 MODEL: Final = "USGS_ASTRO_LINE_SCANNER_SENSOR_MODEL"
 _SEMI_AXES_M: Final = (6378137.0, 6356752.314245179)  # WGS84
-_EARTH_FIXED: Final = "EPSG:4978"
 _N_PARAMETERS: Final = 16
 _FARTHEST_M: Final = 2e-4  # of a ray from that of the map, at the ground
 _STEPS_A_LINE: Final = (1, 2, 4, 8)
@@ -34,9 +33,8 @@ _ORDER: Final = 8
 
 def write_csm(calibration: "Calibration", options: ExportOptions, path: Path) -> None:
     """Write the state of one scan; raises InputError for a platform without scans, or in axes that are not Earth's."""
-    _ = calibration.estimate  # a platform that has not been run is told first
-    maps = _maps(calibration)
-    scan = maps.scan_on_map(_number_of(maps, options.scan))
+    maps = maps_of(calibration, "csm")
+    scan = maps.scan_on_map(number_of(maps, options.scan))
     state = csm_state(scan, calibration.name)
     path.write_text(f"{MODEL}\n{json.dumps(state)}\n", encoding="utf-8")
 
@@ -53,7 +51,7 @@ def csm_state(scan: "ScanOnMap", platform: str) -> dict[str, Any]:
     if not np.all(np.isfinite(np.concatenate([middle, ends]))):
         raise InputError(f"scan {scan.name}", "a middle line that sees no ground", "ground", "correct `map`")
     time_s = (scan.time_us - scan.time_us[0]) / 1e6
-    ground = _earth_fixed_places(scan, middle)[0]
+    ground = earth_fixed_places(scan, middle)[0]
     times_s, positions, quaternions = _track(scan, time_s, ground)
     swath_m = float(np.linalg.norm(ends[1] - ends[0]))
     step_s = float(times_s[1] - times_s[0])
@@ -99,28 +97,6 @@ def csm_state(scan: "ScanOnMap", platform: str) -> dict[str, Any]:
         "m_halfTime": float(time_s[-1] / 2),
         "m_covariance": [0.0] * _N_PARAMETERS**2,
     }
-
-
-def _maps(calibration: "Calibration") -> "PlatformMap":
-    from linepose.config.map import MapSection
-    from linepose.output.map.platform_map import platform_map
-
-    if calibration.data_folder is None:
-        found, expected = "no folder of what it recorded", "its scans and its navigation log"
-        remedy = f"write linepose export {calibration.name} --format csm, or give data_folder to from_results"
-        raise InputError(f"calibration of {calibration.name}", found, expected, remedy)
-    return platform_map(calibration, calibration.platform_file.map or MapSection(), calibration.data_folder)
-
-
-def _number_of(maps: "PlatformMap", name: str | None) -> int:
-    """The observation whose scan has this name; of a platform with one scan that one needs no name."""
-    names = {path.stem: number for number, path in maps.paths.items()}
-    if name is None and len(names) == 1:
-        return next(iter(names.values()))
-    if name not in names:
-        found = "no scan" if name is None else repr(name)
-        raise InputError("--scan", found, f"one of {', '.join(names)}", f"write --scan {next(iter(names))}")
-    return names[name]
 
 
 def _optics(camera: "Camera", place: str) -> dict[str, Any]:
@@ -192,20 +168,14 @@ def _poses(scan: "ScanOnMap", time_s: "Floats") -> tuple["Floats", "Floats"]:
     import numpy as np
     from scipy.spatial.transform import Rotation
 
-    from linepose.geometry.rotations import matrix_from_euler
-
-    times = scan.time_us[0] + np.rint(1e6 * time_s).astype(np.int64)
-    position, euler = scan.navigation.pose_at(scan.navigation.log, times)
-    body = matrix_from_euler(euler + scan.correction[3:])
-    to_earth, offset = _earth_fixed(scan)
-    centre = position + scan.correction[:3] + body @ scan.mounted.pose[:3]
+    centre, body = camera_on_earth(scan, scan.time_us[0] + np.rint(1e6 * time_s).astype(np.int64))
     ours_from_csm = np.array(
         [[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]
     )  # it looks along -z, samples along -y
-    quaternion = Rotation.from_matrix(to_earth @ body @ scan.mounted.turn @ ours_from_csm).as_quat()
+    quaternion = Rotation.from_matrix(body @ scan.mounted.turn @ ours_from_csm).as_quat()
     flips = np.sign(np.sum(quaternion[1:] * quaternion[:-1], axis=1))
     quaternion[1:] *= np.cumprod(np.where(flips < 0, -1.0, 1.0))[:, None]
-    return centre @ to_earth.T + offset, quaternion
+    return centre, quaternion
 
 
 def interpolated(values: "Floats", where: "Floats") -> "Floats":
@@ -225,38 +195,6 @@ def interpolated(values: "Floats", where: "Floats") -> "Floats":
             weight = np.prod((share[rows, None] - others) / (node - others), axis=1)
             whole[rows] += weight[:, None] * values[index[rows] + node]
     return whole
-
-
-def _earth_fixed(scan: "ScanOnMap") -> tuple["Floats", "Floats"]:
-    """Matrix (3, 3) and offset (3,) that take north, east, down to Earth-fixed coordinates (m)."""
-    import numpy as np
-    from pyproj import Transformer
-
-    from linepose.inputs.local_frame import GEODETIC, ecef_from_ned
-
-    frame = scan.frame.frame
-    if frame is None or frame.origin is None:
-        raise InputError(
-            "map_frame",
-            "coordinates of their own" if frame is None else f"north and east of {frame.name}",
-            "a plane that touches the Earth: lengths on a projected map are not those on the ground",
-            "write map_frame: {origin: [latitude, longitude, height]}, or leave the log in latitude and longitude",
-        )
-    latitude, longitude, height = frame.origin
-    offset = Transformer.from_crs(GEODETIC, _EARTH_FIXED).transform(latitude, longitude, height)
-    return ecef_from_ned(latitude, longitude), np.array(offset)
-
-
-def _earth_fixed_places(scan: "ScanOnMap", places: "Floats") -> "Floats":
-    """Earth-fixed coordinates (K, 3) of easting, northing, height (K, 3) on the scan's map."""
-    import numpy as np
-    from pyproj import Transformer
-
-    from linepose.inputs.local_frame import GEODETIC
-
-    assert scan.frame.frame is not None
-    longitude, latitude, height = scan.frame.frame.wgs84(places).T
-    return np.stack(Transformer.from_crs(GEODETIC, _EARTH_FIXED).transform(latitude, longitude, height), axis=-1)
 
 
 FORMAT: Final = ExportFormat("csm", "line-scan state of USGSCSM, for ASP; of one scan", "-csm.json", write_csm)

@@ -28,7 +28,8 @@ def export_options(parent_frame: str, child_frame: str, body_axes: str, scan: st
 class ExportOptions:
     """Names of the body's and the camera's frame, and the body's axes; none for what the format is used with.
 
-    `scan` names the scan of a format that holds one, without its ending; none for the only one.
+    `scan` names the scan of a format that holds scans, without its ending; none for the only one, or for all
+    in a format that can hold them.
 
     Raises InputError for a name that ROS would not take, for two equal names, and for unknown axes.
     """

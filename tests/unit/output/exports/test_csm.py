@@ -5,29 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pyproj import Transformer
 
 from linepose.errors import InputError
 from linepose.output.exports.csm import MODEL, csm_state
 from linepose.output.exports.map_frame import MapFrame
 from linepose.output.map.frame import SurveyMap
-from linepose.output.map.ground import flat_ground
 from linepose.pipeline.calibration import Calibration
 from linepose.survey.navigation_log import nearest_pose
 from unit import made_up
+from unit.output.exports.on_earth import PLACE, TO_GEODETIC, earth_fixed, on_earth
 from unit.output.map.adjusted_platform import adjusted_calibration, adjusted_scans
-from unit.output.map.made_up_scan import CAMERA, ORIGIN, scan
+from unit.output.map.made_up_scan import CAMERA
 
-PLACE = MapFrame("EPSG:32756", (-33.89, 151.19, 40.0))
-TO_GEODETIC = Transformer.from_crs("EPSG:4978", "EPSG:4979")
 MILLIMETRE = 1e-3
-
-
-def on_earth(**changes):
-    """The made-up strip about the origin of a plane that touches the Earth; the ground is 1 m below it."""
-    strip = scan(ground=flat_ground(-1.0), **changes)
-    log = replace(strip.navigation.log, position_m=strip.navigation.log.position_m - ORIGIN)
-    return replace(strip, navigation=replace(strip.navigation, log=log), frame=SurveyMap(PLACE))
 
 
 def lagrange(values, start, step, time):
@@ -73,11 +63,6 @@ def ray(state, line, sample):
         [2 * (a * c - b * d), 2 * (b * c + a * d), -a * a - b * b + c * c + d * d],
     ]
     return centre, np.array(matrix) @ look / np.linalg.norm(look)
-
-
-def earth_fixed(places):
-    longitude, latitude, height = PLACE.wgs84(places).T
-    return np.stack(TO_GEODETIC.transform(latitude, longitude, height, direction="INVERSE"), axis=-1)
 
 
 def farthest_m(strip, state):
