@@ -10,7 +10,19 @@ from pathlib import Path
 
 import cluster
 from faults import faults
-from project import LOCAL, NOT_COMPARED, REAL_CELL, SLURM, TINY_ALONE, differences, results, run, tiny
+from project import (
+    BY_COMMAND,
+    LINEPOSE,
+    LOCAL,
+    NOT_COMPARED,
+    REAL_CELL,
+    SLURM,
+    TINY_ALONE,
+    differences,
+    results,
+    run,
+    tiny,
+)
 
 SLOWER_AT_MOST = 1.3  # coverage cell, on SLURM against locally
 N_SURVEYS = int(os.environ.get("N_SURVEYS", "200"))  # of the coverage cell
@@ -29,9 +41,14 @@ def main() -> None:
 
 
 def same_bytes(folder: Path) -> None:
-    """The whole project in two folders; a coverage cell timed by itself, as what comes before it is made already."""
+    """The whole project in three folders, once by `linepose run`; then a coverage cell alone, which is timed."""
     local, slurm = tiny(folder / "local", N_SURVEYS), tiny(folder / "slurm", N_SURVEYS)
     whole = [run(local, *LOCAL, *TINY_ALONE), run(slurm, *SLURM, *TINY_ALONE)]
+    command = tiny(folder / "command", N_SURVEYS)
+    by_command = run(command, *BY_COMMAND, program=LINEPOSE)
+    if unlike := differences(local, command, of="tiny"):
+        sys.exit(f"slurm-test: found other bytes in {', '.join(unlike)} by `linepose run`, expected the local run's")
+    tell(f"`linepose run tiny --profile slurm`: the same bytes in {by_command:.0f} s")
     cell = [run(local, *LOCAL, REAL_CELL), run(slurm, *SLURM, REAL_CELL)]
     run(local, *LOCAL, "coverage")
     run(slurm, *SLURM, "coverage")

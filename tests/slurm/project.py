@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from cluster import CORES
@@ -16,10 +17,14 @@ REAL_CELL = "results/coverage/cells/ladybird-sim/white/adjustment.parquet"  # su
 TINY_ALONE = ["--config", 'platforms=["tiny"]']
 BASIN = {"basin": {"n_distances": 2, "n_angles": 1, "optimisers": ["powell"]}}
 LOCAL = ["--cores", str(CORES)]
+PATIENT = ["--latency-wait", "10", "--slurm-init-seconds-before-status-checks", "2"]  # as long as one machine needs
 SLURM = [
     *("--profile", str(ROOT / "profiles" / "slurm"), "--cores", str(CORES), "--max-threads", str(CORES)),
-    *("--latency-wait", "10", "--slurm-init-seconds-before-status-checks", "2"),
+    *PATIENT,
 ]
+SNAKEMAKE = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+LINEPOSE = [sys.executable, "-c", "from linepose.cli import main; main()"]
+BY_COMMAND = ["run", "tiny", "--cores", str(CORES), "--profile", "slurm", "--", "--max-threads", str(CORES), *PATIENT]
 
 
 def tiny(folder: Path, n_surveys: int) -> Path:
@@ -35,18 +40,17 @@ def tiny(folder: Path, n_surveys: int) -> Path:
     return folder
 
 
-def start(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
-    """Snakemake begun in a project's folder; its messages go to run.log there."""
+def start(folder: Path, *arguments: str, program: Sequence[str] = SNAKEMAKE) -> "subprocess.Popen[str]":
+    """A program, Snakemake if none is given, begun in a project's folder; its messages go to run.log there."""
     environment = os.environ | {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
-    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"), *arguments]
     with (folder / "run.log").open("a") as log:
-        return subprocess.Popen(command, cwd=folder, env=environment, stdout=log, stderr=log, text=True)
+        return subprocess.Popen([*program, *arguments], cwd=folder, env=environment, stdout=log, stderr=log, text=True)
 
 
-def run(folder: Path, *arguments: str) -> float:
-    """Run Snakemake there; the time that it took, in seconds. Ends the test where it fails."""
+def run(folder: Path, *arguments: str, program: Sequence[str] = SNAKEMAKE) -> float:
+    """Run it there; the time that it took, in seconds. Ends the test where it fails."""
     begun = time.monotonic()
-    if start(folder, *arguments).wait(timeout=3600):
+    if start(folder, *arguments, program=program).wait(timeout=3600):
         sys.exit(f"slurm-test: {' '.join(arguments)} failed in {folder}:\n{(folder / 'run.log').read_text()}")
     return time.monotonic() - begun
 
@@ -63,7 +67,8 @@ def results(folder: Path) -> dict[str, str]:
     }
 
 
-def differences(folder: Path, other: Path) -> list[str]:
-    """Names of the results that two projects do not have alike."""
+def differences(folder: Path, other: Path, of: str = "") -> list[str]:
+    """Names of the results that two projects do not have alike; of one platform alone if it is named."""
     one, two = results(folder), results(other)
-    return sorted(name for name in one.keys() | two.keys() if one.get(name) != two.get(name))
+    names = [name for name in one.keys() | two.keys() if not of or name.startswith(f"{of}/")]
+    return sorted(name for name in names if one.get(name) != two.get(name))
