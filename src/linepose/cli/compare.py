@@ -43,18 +43,15 @@ def compare(
 
 def lines_of(found: "Comparison") -> list[str]:
     """A comparison for people: each number, the tests, and the shift of three pixels."""
-    from linepose.estimation.pose_change import GROUPS
-    from linepose.geometry.pose import TURN_WORDS
+    from linepose.estimation.pose_change import GROUPS, in_words
 
     first, second = found.names
     lines = [f"{'':20s}{f'{second} - {first}':>24s}{'sigma':>12s}{'in sigmas':>12s}"]
     for number, row in found.table().iterrows():
-        quantity, unit = str(number).rsplit("_", 1)
+        quantity, unit = in_words(str(number))
         digits = 4 if unit == "m" else 3
         cells = (f"{row['difference'] + 0.0:.{digits}f} {unit}", f"{row['sigma']:.{digits}f} {unit}")
-        lines.append(
-            f"{TURN_WORDS.get(quantity, quantity):20s}{cells[0]:>24s}{cells[1]:>12s}{row['sigmas'] + 0.0:>+12.1f}"
-        )
+        lines.append(f"{quantity:20s}{cells[0]:>24s}{cells[1]:>12s}{row['sigmas'] + 0.0:>+12.1f}")
     for group in GROUPS:
         one = found.change.test(group)
         chance = "" if found.n_shared_measurements else f", p = {one.p_value:.3g}"

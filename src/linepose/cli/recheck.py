@@ -49,8 +49,7 @@ def recheck(
 
 def lines_of(found: "Recheck") -> list[str]:
     """A recheck for people: the verdict, the move of each number, the tests, and warnings."""
-    from linepose.estimation.pose_change import GROUPS, POWER, WHOLE
-    from linepose.geometry.pose import TURN_WORDS
+    from linepose.estimation.pose_change import GROUPS, POWER, WHOLE, in_words
 
     whole = found.change.test(WHOLE)
     verdict = "holds" if found.holds else "the camera has moved"
@@ -62,10 +61,10 @@ def lines_of(found: "Recheck") -> list[str]:
         f"{'':20s}{'moved by':>14s}{'sigma':>14s}{'least seen':>14s}",
     ]
     for move, row in found.table().iterrows():
-        quantity, unit = str(move).rsplit("_", 1)
+        quantity, unit = in_words(str(move))
         digits = 3 if unit == "m" else 2
         cells = (f"{value + 0.0:.{digits}f} {unit}" if abs(value) < 1e3 else "not seen" for value in row)
-        lines.append(f"{TURN_WORDS.get(quantity, quantity):20s}" + "".join(f"{cell:>14s}" for cell in cells))
+        lines.append(f"{quantity:20s}" + "".join(f"{cell:>14s}" for cell in cells))
     for group in GROUPS:
         one = found.change.test(group)
         lines.append(

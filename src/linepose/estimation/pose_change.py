@@ -13,7 +13,7 @@ from linepose.arrays import Floats
 from linepose.geometry.distance import p_value
 from linepose.geometry.pose import N_PARAMETERS
 
-MOVES: Final = ("forward_m", "right_m", "down_m", "roll_deg", "pitch_deg", "yaw_deg")  # TURN_WORDS says which turns
+MOVES: Final = ("forward_m", "right_m", "down_m", "turn_forward_deg", "turn_right_deg", "turn_down_deg")
 PER_MOVE: Final = np.array([1.0] * 3 + [float(np.degrees(1.0))] * 3)  # from m and rad
 GROUPS: Final = {"lever arm": (0, 3), "boresight": (3, 6), "all six": (0, 6)}
 WHOLE: Final = "all six"
@@ -82,6 +82,12 @@ class PoseChange:
 
     def _scaled_information(self) -> Floats:
         return self.information * np.outer(SCALE, SCALE)
+
+
+def in_words(move: str) -> tuple[str, str]:
+    """What people read of a name of `MOVES`: the quantity, and its unit."""
+    quantity, unit = move.rsplit("_", 1)
+    return quantity.replace("turn_", "turn about "), unit
 
 
 def change_of_estimates(difference: Floats, covariance: Floats) -> PoseChange:

@@ -103,6 +103,8 @@ def test_lines_and_json_tell_all(pair):
     assert sum("pixel at 10 m" in line for line in lines) == 3
     told = json.loads(json.dumps(found.as_dict(), allow_nan=False))
     assert_allclose(told["differences"]["forward_m"]["difference"], MOVE_M)
+    assert list(told["differences"])[3:] == ["turn_forward_deg", "turn_right_deg", "turn_down_deg"]
+    assert "turn about down" in lines[6]
     assert set(told["pixels"]) == {"first", "centre", "last"}
 
 

@@ -85,6 +85,7 @@ def test_a_knocked_camera_ends_with_three_and_json_tells_the_move(project):
     told = json.loads(result.stdout)
     assert not told["holds"]
     assert told["tests"]["all six"]["p_value"] < 0.001
+    assert list(told["moves"])[3:] == ["turn_forward_deg", "turn_right_deg", "turn_down_deg"]
     right = told["moves"]["right_m"]
     assert abs(right["move"] - MOVED_M) < 4 * right["sigma"]
 
@@ -98,6 +99,7 @@ def test_lines_for_people_name_the_verdict_and_each_number(project):
     change = PoseChange(information, information @ [0.1, 0, 0, 0, 0, 0])
     lines = lines_of(Recheck("mine", 16, 5, change, 0.05, ("few draws",)))
     assert lines[0].startswith("mine: the camera has moved (p = ")
+    assert lines[5].startswith("turn about forward  ")
     assert re.match(r"forward +0\.100 m +0\.010 m +0\.0\d\d m", lines[2])
     assert lines[4].split()[-2:] == ["not", "seen"]
     assert lines[-1] == "care: few draws"
