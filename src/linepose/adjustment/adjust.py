@@ -30,6 +30,7 @@ from linepose.adjustment.with_board import adjusted_with_board
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
 from linepose.geometry.camera import Camera
+from linepose.geometry.camera_sigmas import fault_of_certain
 from linepose.geometry.pose import check_pose
 from linepose.survey.observations import Survey
 
@@ -158,12 +159,5 @@ def _known_of_all(measurements: Measurements, few: Measurements, fitted: KnownPo
 
 
 def _check_camera(camera: Camera) -> None:
-    sigmas = {
-        "u_px": camera.sigmas.u_px,
-        "v_px": camera.sigmas.v_px,
-        "principal_point_px": camera.sigmas.principal_point_px,
-        "focal_length_m": camera.sigmas.focal_length_m,
-    }
-    for name, value in sigmas.items():
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(f"camera.sigmas.{name}", f"{value}", "a positive number", "give how well it is known")
+    if fault := fault_of_certain(camera.sigmas):
+        raise InputError(fault.key, fault.found, fault.expected, fault.remedy)

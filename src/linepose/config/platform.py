@@ -28,7 +28,7 @@ from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
 from linepose.estimation.noise_models import DEFAULT, MEANINGS, NoiseModelName, noise_model
 from linepose.geometry.camera import Camera
-from linepose.geometry.camera_sigmas import ALWAYS_ESTIMATED
+from linepose.geometry.camera_sigmas import fault_of_certain
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, SettingsError, faults_of, validated
@@ -226,9 +226,8 @@ class Platform(Settings):
     def _has_sigmas_that_the_model_weighs(self) -> "Platform":
         if noise_model(self.noise_model).removes_outliers:
             return self
-        if certain := [name for name in ALWAYS_ESTIMATED if getattr(self.camera.sigmas, name) == 0]:
-            found = f"0 with noise_model {self.noise_model}, which estimates it"
-            raise SettingsError(found, "above 0", "give how well it is known", f"camera.sigmas.{certain[0]}")
+        if fault := fault_of_certain(self.camera.sigmas):
+            raise fault
         return self
 
     @model_validator(mode="after")

@@ -59,6 +59,16 @@ class CameraSigmas(Settings):
         return self
 
 
+def fault_of_certain(sigmas: CameraSigmas) -> SettingsError | None:
+    """The fault of sigmas of 0 of what the adjustment always estimates, by their keys in a camera; None of none."""
+    certain = [f"camera.sigmas.{name}" for name in ALWAYS_ESTIMATED if getattr(sigmas, name) == 0]
+    if not certain:
+        return None
+    it, known = ("them", "they are") if len(certain) > 1 else ("it", "it is")
+    expected, remedy = f"above 0, since the adjustment estimates {it}", f"give how well {known} known"
+    return SettingsError("0", expected, remedy, " and ".join(certain))
+
+
 def told_twice(first: str, second: str) -> SettingsError:
     """The fault of two keys that tell the same."""
     return SettingsError(f"{first} and {second}", "one of them", f"leave out {first} or {second}")

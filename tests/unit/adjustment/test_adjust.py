@@ -219,8 +219,10 @@ def test_hand_covariances_that_are_of_no_use(survey, covariance):
 
 
 def test_a_camera_that_claims_to_be_known_exactly(survey):
-    exact = CAMERA.replaced(sigmas=CAMERA.sigmas.replaced(focal_length_m=0.0))
-    with pytest.raises(InputError, match="focal_length_m"):
+    exact = CAMERA.replaced(sigmas=CAMERA.sigmas.replaced(principal_point_px=0.0, focal_length_m=0.0))
+    with pytest.raises(
+        InputError, match=r"^camera.sigmas.principal_point_px and camera.sigmas.focal_length_m: found 0"
+    ):
         adjust(survey, exact, hand(), settings=QUICK)
 
 

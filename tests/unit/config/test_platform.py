@@ -175,6 +175,25 @@ def test_attitude_columns_are_three_behind_the_positions(folder, columns, place,
     assert f"navigation.covariance_columns.{place}: {expected}" in message_of(path, "robot")
 
 
+@pytest.mark.parametrize(
+    ("zero", "place", "words"),
+    [
+        (("focal_length_m",), "camera.sigmas.focal_length_m", ("it", "it is")),
+        (
+            ("principal_point_px", "focal_length_m"),
+            "camera.sigmas.principal_point_px and camera.sigmas.focal_length_m",
+            ("them", "they are"),
+        ),
+    ],
+)
+def test_sigmas_of_zero_of_what_the_adjustment_estimates_are_told_together(folder, zero, place, words):
+    path = folder("robot", changed("camera.sigmas", dict.fromkeys(zero, 0)) | {"noise_model": "adjustment"})
+    expected = f"found 0, expected above 0, since the adjustment estimates {words[0]}; give how well {words[1]} known"
+    assert message_of(path, "robot") == f"{path}/robot.yaml: {place}: {expected}"
+    folder("robot", changed("camera.sigmas", dict.fromkeys(zero, 0)) | {"noise_model": "published"})
+    assert load_platform(path, "robot").camera.sigmas.focal_length_m == 0
+
+
 def test_nan_in_the_hand_measured_pose(folder):
     path = folder("robot", changed("hand_measured.position_m", [0.1, float("nan"), 0.0]))
     assert message_of(path, "robot") == (
