@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from linepose.pipeline.calibration import Calibration
 
 _FARTHEST_PX: Final = 0.5  # by which its resampling to the nearest pixel moves each pixel anyhow
+_TILT_DEG: Final = 10.0  # of a vehicle, at which the error of a missing lever arm is told
 _AS_OURS: Final = ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))  # massipipe's camera axes in ours
 
 
@@ -40,6 +41,7 @@ def write_massipipe(calibration: "Calibration", options: ExportOptions, path: Pa
         warnings.simplefilter("ignore")  # at a pitch of 90 deg any roll with its yaw is the same rotation
         euler = euler_from_matrix(estimate.matrix[:3, :3] @ turn)
     forward, right, down = map(float, estimate.pose[:3])
+    tilted_m = tilted_off_m(camera, estimate.matrix, calibration.name)
     arguments = {
         "camera_cross_track_fov": fov_rad,
         "camera_cross_track_n_pixels": camera.n_pixels,
@@ -53,11 +55,34 @@ def write_massipipe(calibration: "Calibration", options: ExportOptions, path: Pa
         "Arguments of massipipe.FlatTerrainOrthorectifier (rad, m), as its release 0.3.2 uses them.",
         f"Its pixels at equal steps about the middle look within {off_px:.2f} px of where ours do.",
         f"It has no lever arm: places are {np.hypot(forward, right):.3f} m off ({forward:.4f} m forward, {right:.4f} m "
-        "right) unless it is given the camera's positions.",
+        f"right) where the vehicle is level, and up to {tilted_m:.3f} m at a roll or pitch of {_TILT_DEG:g} deg, "
+        "unless it is given the camera's positions.",
         "Roll is right wing up in the .lcf files that massipipe reads; true for a log whose roll is right wing down.",
     ]
     head = "".join(f"# {said}\n" for said in comments)
     path.write_text(head + yaml.safe_dump(arguments, sort_keys=False, default_flow_style=None), encoding="utf-8")
+
+
+def tilted_off_m(camera: "Camera", mounting: "Floats", place: str) -> float:
+    """How far off (m) the worst place of a line is without a lever arm but its height, of roll or pitch by `_TILT_DEG`.
+
+    mounting (4, 4): from the camera to the body, forward, right, down. The arm turns with the body: the camera stands
+    beside the place that is taken for its own, and at another height, which counts as much as a ray looks aside. Rays
+    that look up have no place; raises InputError for a camera with a pixel that has no ray.
+    """
+    import numpy as np
+
+    from linepose.geometry.rotations import matrix_from_euler
+
+    arm, looks = mounting[:3, 3], all_rays(camera, place) @ mounting[:3, :3].T
+    worst = 0.0
+    for roll, pitch in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        body = matrix_from_euler(np.deg2rad([roll * _TILT_DEG, pitch * _TILT_DEG, 0.0]))
+        shift, ray = body @ arm, looks @ body.T
+        ray = ray[ray[:, 2] > 0]
+        places = shift[:2] + ray[:, :2] / ray[:, 2:] * (arm[2] - shift[2])
+        worst = max(worst, float(np.linalg.norm(places, axis=1).max(initial=np.hypot(*shift[:2]))))
+    return worst
 
 
 def centred_fan(camera: "Camera", place: str) -> tuple[float, "Floats", float]:

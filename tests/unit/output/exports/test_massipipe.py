@@ -1,5 +1,6 @@
 """massipipe's equations, as its orthorectification.py (0.3.2) has them, lead to the ground points of our rays."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -83,12 +84,25 @@ def test_places_are_ours_at_any_attitude(exported, euler_deg, lens):
 def test_what_it_has_no_place_for_is_told_in_metres(exported):
     """Level, altitude takes the arm's downward part; the rest is the shift that the file tells."""
     read, calibration, text = exported(CAMERAS_DEG[0], (0.3, -0.4, -0.8), **CENTRED)
-    assert "places are 0.500 m off (0.3000 m forward, -0.4000 m right)" in text
+    assert "places are 0.500 m off (0.3000 m forward, -0.4000 m right) where the vehicle is level" in text
     assert "euler_imu_from_camera" in text
     for body_deg in LEVEL_DEG:
         shift = (matrix_from_euler(np.deg2rad(body_deg)) @ [0.3, -0.4, 0.0])[:2]
         ours = our_places(calibration, body_deg)
         np.testing.assert_allclose(its_places(read, body_deg) + shift, ours, atol=MILLIMETRE)
+
+
+@pytest.mark.parametrize("position_m", [(0.0, 0.0, -0.8), (0.3, -0.4, 0.5)])
+def test_an_arm_of_a_vehicle_that_is_not_level_is_as_far_off_as_the_file_tells(exported, position_m):
+    read, calibration, text = exported(CAMERAS_DEG[0], position_m, **CENTRED)
+    (told,) = re.findall(r"level, and up to (\d\.\d{3}) m at a roll or pitch of 10 deg", text)
+    off_m = [
+        np.linalg.norm(our_places(calibration, body_deg) - its_places(read, body_deg), axis=1).max()
+        for body_deg in [(10.0, 0.0, 0.0), (-10.0, 0.0, 50.0), (0.0, 10.0, 0.0), (0.0, -10.0, 170.0)]
+    ]
+    assert max(off_m) == pytest.approx(float(told), abs=MILLIMETRE)
+    if position_m[:2] == (0.0, 0.0):
+        assert float(told) == pytest.approx(0.8 * np.sin(np.deg2rad(10)), abs=0.01)  # 0.012 m of height at 27 deg
 
 
 def test_a_lens_off_the_middle_is_as_far_off_as_the_file_tells(exported):
