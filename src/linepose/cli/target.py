@@ -72,7 +72,7 @@ def target(
     chosen = _chosen(kind, rows, columns, spacing_mm, described)
     sheet = paper_of(paper) if paper else None if tile else paper_of("A1")
     spread = paper_of(tile, "--tile") if tile else None
-    n_sheets = write_pdf(chosen, output, sheet, spread, described is None)
+    n_sheets = write_pdf(chosen, output, sheet, spread, may_scale=described is None, paper_given=paper is not None)
     description = output.with_suffix(".yaml")
     is_new = described is None or described.resolve() != description.resolve()
     if is_new:
@@ -82,7 +82,11 @@ def target(
     if is_new:
         typer.echo(f"wrote {description}: the section `target` of the platform's file")
     if range_m is not None and pixel_mrad is not None and _tell_sizes(chosen, range_m, pixel_mrad):
-        typer.echo(f"  {_remedy(chosen, range_m, pixel_mrad * 1e-3, described, sheet, spread)}come closer")
+        from linepose.output.printing.seen import range_for
+
+        larger = _larger(chosen, range_m, pixel_mrad * 1e-3, described, sheet, spread, paper is not None)
+        farthest_m = range_for(chosen, range_m, pixel_mrad * 1e-3)
+        typer.echo(f"  {larger}come within {farthest_m:.3g} m (--range-m {farthest_m:.3g})")
 
 
 def _chosen(
@@ -141,13 +145,14 @@ def _tell_sizes(target: "GridSection", range_m: float, pixel_mrad: float) -> boo
     return any(not is_seen(size_m, needed_m) for _, size_m, needed_m in rows)
 
 
-def _remedy(
+def _larger(
     target: "GridSection",
     range_m: float,
     pixel_rad: float,
     described: Path | None,
     sheet: "Paper | None",
     spread: "Paper | None",
+    paper_given: bool,
 ) -> str:
     """What prints the target large enough, with "or" behind it; empty where nothing does."""
     from linepose.output.printing.fit import options_for
@@ -159,5 +164,5 @@ def _remedy(
     if spacing_mm >= _TOO_LARGE_MM:
         return ""
     larger = target.scaled(target.rows, target.columns, spacing_mm / 1e3)
-    options = options_for(larger, sheet, spread)
+    options = options_for(larger, sheet, spread, paper_given)
     return "" if options is None else f"give {' '.join([f'--spacing-mm {spacing_mm}', *options])}, or "

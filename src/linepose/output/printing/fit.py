@@ -12,10 +12,10 @@ _SMALLEST_MM: Final = 1
 _TILE: Final = "A4"
 
 
-def check_fits(target: GridSection, artwork: Artwork, paper: Paper, may_scale: bool) -> None:
+def check_fits(target: GridSection, artwork: Artwork, paper: Paper, may_scale: bool, paper_given: bool) -> None:
     """Raise InputError where the artwork does not fit the paper, with the paper that would, and the spacing.
 
-    `may_scale` says whether the spacing is given by an option.
+    `may_scale` says whether the spacing is given by an option, `paper_given` whether the paper is.
     """
     width, height = artwork.width_m * 1e3, artwork.height_m * 1e3
     if paper.holds(width, height):
@@ -27,7 +27,7 @@ def check_fits(target: GridSection, artwork: Artwork, paper: Paper, may_scale: b
     larger = smallest_paper(width, height)
     if larger is not None:
         remedies.append(f"--paper {larger.name}")
-    remedies.append(f"--tile {_TILE} without --paper")
+    remedies.append(_over_tiles(paper_given))
     inner = paper.laid_for(width, height).inner_mm
     raise InputError(
         f"{target.kind}, {target.rows} rows and {target.columns} columns {target.spacing * 1e3:g} mm apart",
@@ -37,10 +37,10 @@ def check_fits(target: GridSection, artwork: Artwork, paper: Paper, may_scale: b
     )
 
 
-def options_for(target: GridSection, paper: Paper | None, tile: Paper | None) -> list[str] | None:
+def options_for(target: GridSection, paper: Paper | None, tile: Paper | None, paper_given: bool) -> list[str] | None:
     """The options with which a target that does not fit `paper`, or is spread over `tile`, is printed.
 
-    Empty where it is printed so; None where nothing prints it.
+    Empty where it is printed so; None where nothing prints it. `paper_given` says whether the paper is by an option.
     """
     artwork = target.artwork()
     assert artwork is not None
@@ -52,7 +52,11 @@ def options_for(target: GridSection, paper: Paper | None, tile: Paper | None) ->
         return [f"--paper {larger.name}"]
     if sheets_of(tile or paper_of(_TILE), artwork) > MOST_SHEETS:
         return None
-    return [] if tile is not None else [f"--tile {_TILE} without --paper"]
+    return [] if tile is not None else [_over_tiles(paper_given)]
+
+
+def _over_tiles(paper_given: bool) -> str:
+    return f"--tile {_TILE}{' (and leave --paper out)' if paper_given else ''}"
 
 
 def sheets_of(tile: Paper, artwork: Artwork) -> float:

@@ -21,6 +21,13 @@ def factor_for(target: TargetSection, range_m: float, pixel_rad: float) -> float
     return max(needed / size for _, size, needed in size_rows(target, range_m, pixel_rad))
 
 
+def range_for(target: TargetSection, range_m: float, pixel_rad: float) -> float:
+    """The farthest range (m) at which a target that is too small at this one is seen, rounded down to three digits."""
+    farthest_m = range_m / factor_for(target, range_m, pixel_rad)
+    step = 10.0 ** (math.floor(math.log10(farthest_m)) - 2)
+    return math.floor(farthest_m / step * (1 + 1e-9)) * step
+
+
 def spacing_for(target: TargetSection, spacing_m: float, range_m: float, pixel_rad: float) -> int:
     """The smallest spacing in whole mm at which a target in proportion is seen."""
     factor = factor_for(target, range_m, pixel_rad)

@@ -11,11 +11,19 @@ from linepose.survey.targets.base import GridSection
 from linepose.tables import atomic_write
 
 
-def write_pdf(target: GridSection, path: Path, paper: Paper | None, tile: Paper | None, may_scale: bool = True) -> int:
+def write_pdf(
+    target: GridSection,
+    path: Path,
+    paper: Paper | None,
+    tile: Paper | None,
+    *,
+    may_scale: bool = True,
+    paper_given: bool = True,
+) -> int:
     """Write the print, and a page of notes, whole or not at all; returns the number of sheets of the print.
 
     On one sheet of `paper`, or over as many of `tile` as it takes. Raises InputError where it does not fit;
-    `may_scale` says whether its spacing may then be another.
+    `may_scale` says whether its spacing may then be another, `paper_given` whether the paper is by an option.
     """
     import matplotlib as mpl
     from matplotlib.backends.backend_pdf import PdfPages
@@ -27,7 +35,7 @@ def write_pdf(target: GridSection, path: Path, paper: Paper | None, tile: Paper 
     artwork = target.artwork()
     assert artwork is not None
     if paper is not None:
-        check_fits(target, artwork, paper, may_scale)
+        check_fits(target, artwork, paper, may_scale, paper_given)
     pages = [sheet(target, artwork, paper)] if tile is None and paper is not None else []
     if tile is not None:
         n_sheets = sheets_of(tile, artwork)

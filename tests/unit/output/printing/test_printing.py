@@ -19,6 +19,15 @@ def run(*arguments):
     return CliRunner().invoke(app, ["target", *arguments])
 
 
+def followed(arguments, advice):
+    """The run of what was given with the options of an advice behind it as printed, less what it says to leave out."""
+    options, given = advice.removesuffix(" (and leave --paper out)"), list(arguments)
+    if options != advice:
+        place = given.index("--paper")
+        given[place : place + 2] = []
+    return run(*given, *options.split())
+
+
 def pages_of(path):
     """Width and height (mm) and the drawing operators of each page."""
     data = path.read_bytes()
@@ -102,6 +111,7 @@ def test_tiles_carry_on_where_the_last_one_ends(tmp_path):
     [
         ("--kind", "chessboard", "--rows", "5", "--columns", "6", "--paper", "A5"),
         ("--rows", "2", "--columns", "3", "--paper", "A3"),
+        ("--spacing-mm", "200"),
     ],
 )
 def test_what_does_not_fit_is_refused_with_what_does(tmp_path, arguments):
@@ -111,12 +121,8 @@ def test_what_does_not_fit_is_refused_with_what_does(tmp_path, arguments):
     (told,) = ran.output.strip().splitlines()
     assert not list(tmp_path.iterdir())
     advice = told.partition("; give ")[2].split(" or ")
-    tried = []
-    for one in advice:
-        own = one.removesuffix(" without --paper").split()
-        rest = list(arguments[:-2]) if own[0] in ("--paper", "--tile") else list(arguments)
-        tried.append(run(*rest, *own, *place).exit_code)
-    assert tried == [0] * len(advice)
+    assert [followed((*arguments, *place), one).exit_code for one in advice] == [0] * len(advice)
+    assert ("leave --paper out" in told) == ("--paper" in arguments)
     assert advice[0].startswith("--spacing-mm")
     larger = str(int(advice[0].split()[1]) + 1)
     assert run(*arguments, "--spacing-mm", larger, *place).exit_code == 1
@@ -135,12 +141,23 @@ def test_dots_too_small_for_the_range_are_told_with_the_spacing_that_does(tmp_pa
 @pytest.mark.parametrize("kind", ["rings", "charuco"])
 def test_what_is_too_small_is_printed_by_the_options_that_are_told(tmp_path, kind):
     given = ("--kind", kind, "--range-m", "6", "--pixel-mrad", "1.9", "--output", str(tmp_path / "t.pdf"))
-    (advice,) = re.findall(
-        r"give (--spacing-mm \d+ --\S+ \S+)(?: without --paper)?, or come closer", run(*given).output
-    )
-    ran = run(*given, *advice.split())
+    ran = followed(given, re.findall(r"give (--spacing-mm \d+ --.*), or come within", run(*given).output)[0])
     assert ran.exit_code == 0
     assert "too small" not in ran.output
+
+
+def test_a_paper_is_told_to_be_left_out_only_where_it_is_given(tmp_path):
+    given = ("--range-m", "11", "--pixel-mrad", "1.9", "--output", str(tmp_path / "t.pdf"))
+    assert " --tile A4, or come within" in run(*given).output
+    assert " --tile A4 (and leave --paper out), or come within" in run("--paper", "A1", *given).output
+
+
+def test_the_range_is_told_where_nothing_prints_the_target_large_enough(tmp_path):
+    given = ("--range-m", "400", "--pixel-mrad", "20", "--output", str(tmp_path / "t.pdf"))
+    told = run(*given).output.splitlines()[-1]
+    nearer = re.fullmatch(r"  come within (\S+) m \(--range-m \1\)", told)[1]
+    assert "too small" not in run(*given, "--range-m", nearer).output
+    assert "too small" in run(*given, "--range-m", f"{1.01 * float(nearer):.6g}").output
 
 
 def test_a_description_is_told_to_grow_and_not_by_options_that_are_refused(tmp_path):
@@ -149,7 +166,10 @@ def test_a_description_is_told_to_grow_and_not_by_options_that_are_refused(tmp_p
     given = ("--described", str(described), "--output", str(tmp_path / "b.pdf"))
     told = run(*given, "--range-m", "90", "--pixel-mrad", "1").output
     side = yaml.safe_load(described.read_text())["target"]["square_m"]
-    assert f"make all sizes in {described} {0.45 / side:.3g} times as large, or come closer" in told
+    assert (
+        f"make all sizes in {described} {0.45 / side:.3g} times as large, or come within {90 * side / 0.45:.3g} m"
+        in told
+    )
     too_small = run(*given, "--paper", "A4").output
     assert "--paper" in too_small
     assert "--spacing-mm" not in too_small
