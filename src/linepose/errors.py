@@ -4,14 +4,13 @@ import errno
 import os
 from typing import Final
 
-_OF_THE_SYSTEM: Final = {
+_OF_THE_DISK: Final = {
     errno.ENOSPC: "make room on it",
     errno.EDQUOT: "make room within the quota",
     errno.EFBIG: "raise the limit of a file's size (ulimit -f), or work on a disk that takes larger files",
     errno.EROFS: "work on one that can be written",
-    errno.EACCES: "get the right to read and write there",
-    errno.EPERM: "get the right to read and write there",
 }
+_OF_RIGHTS: Final = {errno.EACCES, errno.EPERM}
 _MOST_CHARACTERS: Final = 600  # of each part of a message: what a file holds may be a million
 
 
@@ -72,12 +71,14 @@ def one_line(error: BaseException) -> str | None:
     """What a person is told of an error in one line; None of one that is a fault of the program."""
     if isinstance(error, LineposeError):
         return str(error)
-    if isinstance(error, MemoryError):
+    if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM):
         return "found too little memory, expected more; end other programs, or cut the recording into parts"
-    if isinstance(error, OSError) and error.errno in _OF_THE_SYSTEM:
+    if isinstance(error, OSError) and error.errno in {*_OF_THE_DISK, *_OF_RIGHTS}:
         place = f"{error.filename}: " if error.filename else ""
-        found, remedy = os.strerror(error.errno).lower(), _OF_THE_SYSTEM[error.errno]
-        return f"{place}found {found}, expected a disk to write to; {remedy}"
+        expected, remedy = "the right to read or write there", "get it, or name another place"
+        if error.errno in _OF_THE_DISK:
+            expected, remedy = "a disk to write to", _OF_THE_DISK[error.errno]
+        return f"{place}found {os.strerror(error.errno).lower()}, expected {expected}; {remedy}"
     return None
 
 

@@ -41,7 +41,9 @@ def test_what_a_file_holds_never_reaches_the_terminal_as_it_is():
     [
         (OSError(errno.ENOSPC, "No space left on device", "results/a"), "results/a: found no space left on device"),
         (OSError(errno.EFBIG, "File too large", "results/a"), "results/a: found file too large, .*ulimit -f"),
+        (PermissionError(errno.EACCES, "no", "a"), "a: found permission denied, expected the right to read or write"),
         (MemoryError(), "too little memory"),
+        (OSError(errno.ENOMEM, "Cannot allocate memory"), "too little memory"),
         (KeyError("x"), None),
         (FileNotFoundError(errno.ENOENT, "no", "x"), None),
     ],

@@ -60,11 +60,11 @@ def _table(path: Path) -> pd.DataFrame:
     if not path.is_file():
         raise InputError(str(path), "no such file", "a table of control points", _REMEDY)
     check_text(path, "a table of control points")
+    check_commas(path)
     try:
         table = pd.read_csv(path, dtype=str, skipinitialspace=True, keep_default_na=False)
     except (UnicodeDecodeError, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         raise InputError(str(path), " ".join(str(error).split())[:80], "a CSV table with a header", _REMEDY) from None
-    check_commas(list(table.columns), path)
     check_cells(table, path)
     table.columns = table.columns.str.strip()
     twice = [name for name in table.columns if f"{name}.1" in table.columns]

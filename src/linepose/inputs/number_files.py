@@ -1,7 +1,6 @@
 """Headerless CSV files of numbers, as the field data have them; a fault is named with its row."""
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -9,10 +8,11 @@ import numpy as np
 import pandas as pd
 
 from linepose.arrays import Floats
-from linepose.errors import InputError
+from linepose.errors import InputError, quoted
 from linepose.inputs.text_files import check_text
 
 _OTHER_SIGNS: Final = {";": "semicolons", "\t": "tabs"}
+_LONGEST_HEADING: Final = 10_000  # characters
 
 Whole = np.ndarray[tuple[int], np.dtype[np.int64]]
 
@@ -57,7 +57,7 @@ def _read(path: Path, n_columns: int, n_first: int, what: str) -> tuple[Whole, l
     if not lines:
         raise InputError(str(path), "an empty file", what, "restore it, or leave it out")
     if n_columns > 1:
-        check_commas(lines[0].split(","), path)
+        check_commas(path)
     first, second = np.empty(len(lines), dtype=np.int64), []
     others = np.empty((len(lines), n_columns - n_first))
     for index, cells in enumerate(line.split(",") for line in lines):
@@ -79,16 +79,24 @@ def _read(path: Path, n_columns: int, n_first: int, what: str) -> tuple[Whole, l
     return first, second, others
 
 
-def check_commas(cells: Sequence[str], path: Path) -> None:
-    """Raise InputError where the first row of a CSV, split at its commas, has other signs between its cells."""
+def check_commas(path: Path) -> None:
+    """Raise InputError where the first row of a CSV has other signs between its cells, before its first comma.
+
+    To be called before the rows are read: with commas in decimals they have no number of cells.
+    """
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        first = file.read(_LONGEST_HEADING).lstrip("\n ").partition("\n")[0].partition(",")[0]
     for sign, name in _OTHER_SIGNS.items():
-        if sign in cells[0]:
+        if sign in first:
             expected, remedy = "commas, and points in decimals", "save it so, or replace them"
             raise InputError(str(path), f"{name} between cells", expected, remedy)
 
 
 def check_cells(table: pd.DataFrame, path: Path) -> None:
-    """Raise InputError where the rows of a CSV have more cells than its heading: pandas takes the first for names."""
+    """Raise InputError where a CSV's heading is a comment, or rows have more cells, which pandas takes for names."""
+    if str(table.columns[0]).lstrip().startswith("#"):
+        found, remedy = f"a heading that begins with {quoted(str(table.columns[0])[:60])}", "remove the comment"
+        raise InputError(str(path), found, "the names of the columns in the first line", remedy)
     if not isinstance(table.index, pd.RangeIndex):
         found, expected = "rows of more cells than the heading", "a cell in each row for each column"
         raise InputError(str(path), found, expected, "remove the commas at the rows' ends, or name all columns")

@@ -1,5 +1,6 @@
 """Names and patterns of files below a data set's folder, as a platform file gives them."""
 
+import os
 import re
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Final
@@ -39,7 +40,8 @@ Dataset = Annotated[str, AfterValidator(_is_folder)]
 def matching(folder: Path, pattern: str) -> list[Path]:
     """The files of a folder that a name or a pattern is of, sorted by name; a file of just this name comes first.
 
-    Raises InputError where one has a name that the workflow cannot have, or is a device or pipe, which has no end.
+    Raises InputError where one has a name that the workflow cannot have, may not be read, or is a device or pipe, which
+    has no end.
     """
     exact = folder / pattern
     is_name = bool(_SIGNS.search(pattern)) and exact.exists()
@@ -47,6 +49,8 @@ def matching(folder: Path, pattern: str) -> list[Path]:
     for path in found:
         if path.exists() and not path.is_file() and not path.is_dir():
             raise InputError(str(path), "a device or pipe", "a file", "put the file itself there")
+        if path.exists() and not os.access(path, os.R_OK):
+            raise InputError(str(path), "a file that may not be read", "a file", "get the right to read it")
     if is_name:
         return found
     for path in found:

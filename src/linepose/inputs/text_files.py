@@ -1,6 +1,8 @@
 """Text files that a platform's file names: small ones that a person writes, and whether a large one is text."""
 
 import codecs
+import os
+import re
 from pathlib import Path
 from typing import Final
 
@@ -8,6 +10,7 @@ from linepose.errors import InputError
 
 _MOST_BYTES: Final = 10_000_000
 _FIRST_BYTES: Final = 4096
+_LONGEST_LINE: Final = 1_000_000
 
 
 def small_text(path: Path, what: str, key: str) -> str:
@@ -25,8 +28,8 @@ def small_text(path: Path, what: str, key: str) -> str:
         raise InputError(str(path), f"{n_bytes} bytes", f"{what}, at most {_MOST_BYTES} bytes", f"correct {key}")
     try:
         text = path.read_text(encoding="utf-8-sig")
-    except PermissionError:
-        raise InputError(str(path), "a file that may not be read", what, "get the right to read it") from None
+    except OSError as error:
+        raise _unreadable(path, what, error) from None
     except UnicodeDecodeError:
         text = "\0"
     if "\0" in text:
@@ -34,9 +37,34 @@ def small_text(path: Path, what: str, key: str) -> str:
     return text
 
 
-def check_text(path: Path, what: str, remedy: str = "give the file itself, saved as UTF-8 text") -> None:
-    """Raise InputError where a file begins with bytes that are no text, before all of a large one is read."""
-    with path.open("rb") as file:
-        head = file.read(_FIRST_BYTES)
-        if b"\0" in head and not head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            raise InputError(str(path), "bytes that are not text", what, remedy)
+def check_text(
+    path: Path, what: str, remedy: str = "give the file itself, saved as UTF-8 text", in_lines: bool = True
+) -> None:
+    """Raise InputError where a file is no text, before all of a large one is read.
+
+    That is one that cannot be read, begins with bytes that are no text, or with a line of a megabyte where it should be
+    `in_lines`.
+    """
+    try:
+        with path.open("rb") as file:
+            head = file.read(_FIRST_BYTES)
+            if in_lines and not re.search(rb"[\r\n]", head):
+                head += file.readline(_LONGEST_LINE)
+    except OSError as error:
+        raise _unreadable(path, what, error) from None
+    is_utf_16 = head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    if b"\0" in head[:_FIRST_BYTES] and not is_utf_16:
+        raise InputError(str(path), "bytes that are not text", what, remedy)
+    if in_lines and len(head) > _LONGEST_LINE:
+        raise too_long(f"{path}, line 1", what, remedy)
+
+
+def too_long(place: str, what: str, remedy: str) -> InputError:
+    """The error of a line so long that it is none."""
+    return InputError(place, f"no line end within {_LONGEST_LINE} bytes", f"lines of {what}", remedy)
+
+
+def _unreadable(path: Path, what: str, error: OSError) -> InputError:
+    if isinstance(error, PermissionError):
+        return InputError(str(path), "a file that may not be read", what, "get the right to read it")
+    return InputError(str(path), os.strerror(error.errno or 0).lower(), what, "restore it, or give another file")

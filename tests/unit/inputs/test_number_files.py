@@ -1,4 +1,6 @@
 import contextlib
+import errno
+import os
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ from linepose.inputs.control_points import read_control_points
 from linepose.inputs.labels.labels import read_labels
 from linepose.inputs.navigation.log_file import read_navigation_log
 from linepose.inputs.number_files import check_microseconds, read_numbers
-from linepose.inputs.text_files import check_text
+from linepose.inputs.text_files import check_text, small_text
 
 WHAT = "time (us), a, b"
 
@@ -113,7 +115,8 @@ def test_microseconds_from_1980_to_2100_pass(tmp_path):
     ],
 )
 def test_tables_tell_other_signs_between_cells(csv, read, heading, sign, name):
-    path = csv(f"{heading}1,2,3,4\n".replace(",", sign).replace("4", "4,5"))
+    rows = [row.replace(",", sign) for row in (heading, "1,2,3,4\n", "1,2,3.5,4.25\n")]
+    path = csv("".join(row.replace(".", ",") for row in rows))
     with pytest.raises(InputError, match=f"numbers.csv: found {name} between cells, expected commas"):
         read(path)
 
@@ -123,3 +126,42 @@ def test_bytes_that_are_no_text_are_told_before_all_are_read(tmp_path):
         (tmp_path / "a.csv").write_bytes(content)
         with contextlib.nullcontext() if is_text else pytest.raises(InputError, match="found bytes that are"):
             check_text(tmp_path / "a.csv", "numbers")
+
+
+def test_a_line_without_an_end_is_told_before_all_is_read(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_bytes(b"1," * 600_000)
+    with pytest.raises(
+        InputError, match=r"a.csv, line 1: found no line end within 1000000 bytes, expected lines of num"
+    ):
+        check_text(path, "numbers")
+    check_text(path, "JSON", in_lines=False)
+    path.write_bytes(b"1," * 400_000 + b"\n" + b"1," * 600_000)
+    check_text(path, "numbers")
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        (errno.EACCES, "found a file that may not be read, expected numbers; get the right to read it"),
+        (errno.EIO, "found input/output error, expected numbers; restore it"),
+    ],
+)
+@pytest.mark.parametrize("read", [check_text, lambda path, what: small_text(path, what, "key")])
+def test_a_file_that_cannot_be_read_is_an_input_error(csv, monkeypatch, read, fault, told):
+    path = csv("1,2\n")
+
+    def refuse(self, *args, **kwargs):
+        raise OSError(fault, os.strerror(fault), str(self))
+
+    monkeypatch.setattr("pathlib.Path.open", refuse)
+    with pytest.raises(InputError, match=told):
+        read(path, "numbers")
+
+
+@pytest.mark.parametrize(
+    "read", [lambda path: read_labels(path, [1]), lambda path: read_control_points(path, None, None)]
+)
+def test_a_comment_in_place_of_the_heading_is_told(csv, read):
+    with pytest.raises(InputError, match=r"found a heading that begins with '# of Monday', .*; remove the comment"):
+        read(csv("# of Monday\nid,north_m,east_m,down_m\n1,2,3,4\n"))

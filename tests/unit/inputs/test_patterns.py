@@ -41,3 +41,11 @@ def test_a_pipe_is_told_before_it_is_read(tmp_path):
     for pattern in ("run.hdr", "*.hdr"):
         with pytest.raises(InputError, match=r"run.hdr: found a device or pipe, expected a file"):
             matching(tmp_path, pattern)
+
+
+def test_a_file_that_may_not_be_read_is_told(tmp_path, monkeypatch):
+    (tmp_path / "run.hdr").touch()
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+    for pattern in ("run.hdr", "*.hdr"):
+        with pytest.raises(InputError, match=r"run.hdr: found a file that may not be read"):
+            matching(tmp_path, pattern)

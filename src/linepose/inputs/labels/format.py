@@ -31,7 +31,7 @@ class LabelFormat:
 
 def read_json(path: Path) -> Any:
     """The content of a JSON file; raises InputError where it is none."""
-    check_text(path, "labels in JSON")
+    check_text(path, "labels in JSON", in_lines=False)
     try:
         return json.loads(path.read_text(encoding="utf-8-sig"))
     except (ValueError, RecursionError, OSError) as error:

@@ -25,12 +25,12 @@ def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:
     if not path.is_file():
         raise InputError(str(path), "no such file", "approximate labels", "restore it, or set source.points: detection")
     check_text(path, "approximate labels")
+    check_commas(path)
     try:
         table = pd.read_csv(path, dtype={"point": str}, skipinitialspace=True)
     except (ValueError, OSError, OverflowError) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "CSV with a heading", "mend the file") from None
-    check_commas(list(table.columns), path)
     check_cells(table, path)
     twice = [name for name in _COLUMNS if f"{name}.1" in table]
     if twice:

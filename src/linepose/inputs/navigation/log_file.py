@@ -48,8 +48,7 @@ def _read_columns(path: Path) -> pa.Table:
             table = read_parquet(path)
         else:
             check_text(path, "a CSV table of poses")
-            with path.open(encoding="utf-8", errors="replace") as file:
-                check_commas(file.readline().split(","), path)
+            check_commas(path)
             table = pa_csv.read_csv(path, convert_options=pa_csv.ConvertOptions(column_types=types))
         twice = [name for name in _COLUMNS if table.column_names.count(name) > 1]
         if twice:
