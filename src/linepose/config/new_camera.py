@@ -59,7 +59,8 @@ def camera_lines(new: NewCamera, place: str) -> list[str]:
 def camera_values(new: NewCamera) -> dict[str, Any]:
     """The values of a camera that is told by angles, without its sigmas."""
     if new.view_angles is not None:
-        return {"n_pixels": new.n_pixels, "view_angles": read_view_angles(new.view_angles, new.n_pixels)}
+        table = read_view_angles(new.view_angles, new.n_pixels, "--view-angles", "--pixels")
+        return {"n_pixels": new.n_pixels, "view_angles": table}
     principal_point_px = _principal_point_px(new)
     return {
         "n_pixels": new.n_pixels,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from linepose.errors import InputError
+from linepose.errors import InputError, quoted
 from linepose.geometry.view_angles import fault_of_rows, fault_of_width
 from linepose.inputs.number_files import plain_float
 from linepose.inputs.text_files import small_text
@@ -15,7 +15,8 @@ _REQUIRED: Final = ("pixel", "across_deg")
 _COLUMNS: Final = (*_REQUIRED, "along_deg")
 _INSTEAD: Final = ("focal_length_m", "field_of_view_deg", "principal_point_px")
 _WHAT: Final = "a CSV of view angles"
-_SIGNS: Final = (";", "\t", ",")  # the last, for a comma may be that of decimals
+_SIGNS: Final = {";": "semicolons", "\t": "tabs", ",": "commas"}  # commas last, which may be those of decimals
+_BLANKS: Final = "blanks"
 _HEADING: Final = f"columns {', '.join(_REQUIRED)} and perhaps {_COLUMNS[2]}, by name"
 
 
@@ -53,14 +54,16 @@ def with_view_angles(values: dict[str, Any], place: str, inherits: bool) -> dict
     return values | {"camera": camera | {"view_angles": table}}
 
 
-def read_view_angles(path: Path, n_pixels: int | None = None) -> dict[str, list[float]]:
+def read_view_angles(
+    path: Path, n_pixels: int | None = None, key: str = "camera.view_angles", width_key: str = "camera.n_pixels"
+) -> dict[str, list[float]]:
     """Columns of a CSV: pixel, across_deg, and along_deg where it has it; lines that begin with # are passed over.
 
     Between cells stands a comma, or the semicolon, tab or blanks of its heading, with which decimals may have a comma.
     Pixels that are numbered from 1 without a gap are counted from 0. Raises InputError naming the line that is none of
-    such a table, also where it is not of a line of `n_pixels`.
+    such a table, also where it is not of a line of `n_pixels`; `key` and `width_key` are what the person gave these by.
     """
-    lines = small_text(path, _WHAT, "camera.view_angles").splitlines()
+    lines = small_text(path, _WHAT, key).splitlines()
     rows = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     sign = next((one for one in _SIGNS if rows and one in rows[0][1]), None)
     heads = _cells(rows[0][1], sign) if rows else []
@@ -69,19 +72,16 @@ def read_view_angles(path: Path, n_pixels: int | None = None) -> dict[str, list[
         raise InputError(f"{path}, heading", ", ".join(heads) or "nothing", _HEADING, "name the columns")
     table: dict[str, list[float]] = {name: [] for name in heads}
     for k, line in rows[1:]:
-        cells = _cells(line, sign)
-        if len(cells) != len(heads):
-            remedy = (
-                "mend it, or put semicolons between cells where decimals have a comma" if sign == "," else "mend it"
-            )
-            raise InputError(f"{path}, line {k}", f"{len(cells)} cells", f"{len(heads)}, as the heading has", remedy)
-        for name, cell in zip(heads, cells, strict=True):
-            table[name].append(_number(cell if sign == "," else cell.replace(",", "."), f"{path}, line {k}, {name}"))
+        numbers = _numbers(line, sign)
+        if numbers is None or len(numbers) != len(heads):
+            raise _fault(line, heads, sign, f"{path}, line {k}")
+        for name, number in zip(heads, numbers, strict=True):
+            table[name].append(number)
     _check(table, [k for k, _ in rows[1:]], path)
     pixels = table["pixel"]
     if pixels == [float(k) for k in range(1, len(pixels) + 1)]:
         table["pixel"] = [one - 1 for one in pixels]
-    fault = None if n_pixels is None else fault_of_width(table["pixel"], n_pixels)
+    fault = None if n_pixels is None else fault_of_width(table["pixel"], n_pixels, width_key)
     if fault is not None:
         raise InputError(str(path), fault.found, fault.expected, fault.remedy)
     return table
@@ -92,14 +92,36 @@ def _cells(line: str, sign: str | None) -> list[str]:
     return line.split() if sign is None else [one.strip() for one in next(csv.reader([line], delimiter=sign))]
 
 
-def _number(cell: str, place: str) -> float:
+def _number(cell: str, sign: str | None) -> float | None:
+    """The number of a cell, which between other signs than commas may have a decimal comma; None where it is none."""
     try:
-        number = plain_float(cell)
+        number = plain_float(cell if sign == "," else cell.replace(",", "."))
     except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise InputError(place, repr(cell), "a number", "correct it")
-    return number
+        return None
+    return number if math.isfinite(number) else None
+
+
+def _numbers(line: str, sign: str | None) -> list[float] | None:
+    """The numbers of a line's cells; None where one of them is none."""
+    numbers = [_number(cell, sign) for cell in _cells(line, sign)]
+    whole = [one for one in numbers if one is not None]
+    return whole if len(whole) == len(numbers) else None
+
+
+def _fault(line: str, heads: list[str], sign: str | None, place: str) -> InputError:
+    """What is wrong with a line that has no number for each column."""
+    cells = _cells(line, sign)
+    for other in (*_SIGNS, None):
+        numbers = None if other == sign else _numbers(line, other)
+        if numbers is not None and len(numbers) == len(heads):
+            found, expected = (_SIGNS.get(one or "", _BLANKS) for one in (other, sign))
+            remedy = "put the same sign between all cells, those of the heading too"
+            return InputError(place, f"{found} between cells", f"{expected}, as in the heading", remedy)
+    if len(cells) != len(heads):
+        remedy = "mend it, or put semicolons between cells where decimals have a comma" if sign == "," else "mend it"
+        return InputError(place, f"{len(cells)} cells", f"{len(heads)}, as the heading has", remedy)
+    name, cell = next((name, cell) for name, cell in zip(heads, cells, strict=True) if _number(cell, sign) is None)
+    return InputError(f"{place}, {name}", quoted(cell), "a number", "correct it")
 
 
 def _check(table: Mapping[str, list[float]], lines: list[int], path: Path) -> None:

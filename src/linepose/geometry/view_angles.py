@@ -102,10 +102,10 @@ def fault_of_rows(
     return None
 
 
-def fault_of_width(pixel: Sequence[float], n_pixels: int) -> TableFault | None:
+def fault_of_width(pixel: Sequence[float], n_pixels: int, key: str = "camera.n_pixels") -> TableFault | None:
     """What is wrong with a table whose pixels are not those of a line; None of one that reaches to its ends.
 
-    Beyond each end there may be one row.
+    Beyond each end there may be one row. `key` is what says the number of pixels.
     """
     whole = pixel[0] <= 0 and pixel[-1] >= n_pixels - 1
     longer = (pixel[1] <= 0 and pixel[0] < -0.5) or (pixel[-2] >= n_pixels - 1 and pixel[-1] > n_pixels - 0.5)
@@ -113,7 +113,9 @@ def fault_of_width(pixel: Sequence[float], n_pixels: int) -> TableFault | None:
         return None
     width = round(pixel[-1] - pixel[0] + 1)
     found = f"{width} pixels ({pixel[0]:g} to {pixel[-1]:g})"
-    expected = f"{n_pixels} pixels (0 to {n_pixels - 1}), as camera.n_pixels says"
+    expected = f"{n_pixels} pixels (0 to {n_pixels - 1}), as {key} says"
+    if (pixel[0], pixel[-1]) == (1, n_pixels):
+        return TableFault(None, None, found, expected, "count pixels from 0: subtract 1 from each")
     return TableFault(None, None, found, expected, "correct the number of pixels, or give this camera's table")
 
 

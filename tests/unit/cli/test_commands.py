@@ -166,15 +166,20 @@ def test_new_writes_a_camera_as_it_is_sold_with_the_keys_that_go_with_it(here, o
         (["--field-of-view-deg", "38", "--pixel-pitch-um", "8"], "leave out --pixel-pitch-um"),
         (["--view-angles", "angles.csv", "--principal-point-px", "8"], "leave out --principal-point-px"),
         (["--view-angles", "none.csv"], "none.csv: found no such file, expected a CSV of view angles; correct --view"),
-        (["--view-angles", "short.csv"], "short.csv: found 100 pixels (0 to 99), expected 648 pixels"),
+        (
+            ["--view-angles", "short.csv"],
+            "found 100 pixels (0 to 99), expected 648 pixels (0 to 647), as --pixels says",
+        ),
+        (["--view-angles", "config"], "config: found a folder, expected a CSV of view angles; correct --view-angles"),
         (["--field-of-view-deg", "400"], "field_of_view_deg: found 400.0, expected less than or equal to 179"),
     ],
 )
 def test_new_refuses_a_camera_told_twice_or_by_no_table(here, options, told):
     (here / "angles.csv").write_text(TABLE)
     (here / "short.csv").write_text("\n".join(TABLE.split("\n")[:101]))
+    (here / "config").mkdir()
     assert told in one_line(given("new", "mine", *options, *PLACED))
-    assert not (here / "config").exists()
+    assert not list((here / "config").iterdir())
 
 
 def test_new_keeps_another_table_of_its_name(here):
