@@ -96,7 +96,7 @@ class ScansSection(Settings):
     labels: Files = Field(
         "labels.csv",
         description="Labels: CSV (observation, point, u_px, line), CVAT for images 1.1 (.xml), LabelMe (a pattern "
-        "of .json files, one a scan), COCO keypoints, Label Studio or VIA (.json, VIA also .csv).",
+        "of .json files, one a scan), COCO keypoints, Label Studio or VIA 2 (.json, VIA also .csv).",
     )
     point_id: str | None = Field(
         None,

@@ -4,6 +4,7 @@ import json
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,7 +12,7 @@ from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked
 from linepose.inputs.text_files import check_text
 
-_LONGEST_HEADING: Final = 10_000  # characters
+_LONGEST_HEAD: Final = 10_000  # characters
 
 log = logging.getLogger(__name__)
 
@@ -20,7 +21,7 @@ log = logging.getLogger(__name__)
 class LabelFormat:
     """The tool's name, the ending of its files, whether a file's content is of it, and how a file is read.
 
-    `recognises` and `read` get the content of JSON, the first line of CSV, None of any other file.
+    `recognises` and `read` get the content of JSON, the lines of CSV up to its heading, None of any other file.
     """
 
     tool: str
@@ -39,10 +40,13 @@ def read_json(path: Path) -> Any:
         raise InputError(str(path), found, "labels in JSON", "restore the file") from None
 
 
-def read_heading(path: Path) -> str:
-    """The first line of a text, as far as it can be a heading."""
+def read_head(path: Path) -> tuple[str, ...]:
+    """The lines of a CSV up to the first that is neither empty nor a comment; raises InputError where it is no text."""
+    check_text(path, "labels in CSV")
     with path.open(encoding="utf-8-sig", errors="replace") as file:
-        return file.readline(_LONGEST_HEADING).strip()
+        lines = file.read(_LONGEST_HEAD).split("\n")
+    above = sum(1 for _ in takewhile(lambda line: not line.strip() or line.lstrip().startswith("#"), lines))
+    return tuple(line.strip() for line in lines[: above + 1])
 
 
 def entries(value: Any) -> list[dict[str, Any]]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pandas as pd
@@ -14,6 +14,12 @@ from linepose.inputs.text_files import check_text
 from linepose.survey.point_names import WHAT, nameless, point_names
 
 _COLUMNS: Final = ("observation", "point", "u_px", "line")
+HEADING: Final = ",".join(_COLUMNS)
+
+
+def is_own(head: Any) -> bool:
+    """Whether the lines of a CSV up to its heading, as formats of tools get them, end in our own heading."""
+    return isinstance(head, tuple) and set(_COLUMNS) <= {name.strip() for name in head[-1].split(",")}
 
 
 def read_labels(path: Path, numbers: Sequence[int]) -> pd.DataFrame:

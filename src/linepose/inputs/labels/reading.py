@@ -4,7 +4,7 @@ Inside, u_px and line are whole numbers at the centres of pixels and lines. The 
 left corner, so that the first pixel's centre is at 0.5: half a pixel is subtracted from their coordinates.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,8 @@ import pandas as pd
 
 from linepose.errors import InputError
 from linepose.inputs.labels.clicked import Clicked, labels_of
-from linepose.inputs.labels.format import LabelFormat, read_heading, read_json
-from linepose.inputs.labels.labels import read_labels
+from linepose.inputs.labels.format import LabelFormat, read_head, read_json
+from linepose.inputs.labels.labels import HEADING, is_own, read_labels
 from linepose.inputs.labels.registry import FORMATS
 from linepose.inputs.patterns import matching
 
@@ -29,7 +29,7 @@ def read_point_labels(
     """
     paths = matching(folder, pattern)
     if Path(pattern).suffix.lower() == ".csv" and not any(path.is_file() and _format_of(path)[0] for path in paths):
-        return read_labels(folder / pattern, list(scans))
+        return read_labels(_own(folder / pattern, paths), list(scans))
     if not paths:
         remedy = "restore it, correct source.labels, or set source.points: detection"
         raise InputError(str(folder / pattern), "no such file", "approximate labels", remedy)
@@ -39,6 +39,14 @@ def read_point_labels(
     if not clicked:
         raise InputError(str(paths[0]), "no label", "the points that are seen in each scan", "label the scans")
     return labels_of(clicked, scans, n_pixels, point_id)
+
+
+def _own(named: Path, paths: Sequence[Path]) -> Path:
+    """The one file in our own layout; raises InputError where a pattern is of several."""
+    if len(paths) > 1:
+        found, remedy = f"{len(paths)} files, as {paths[0].name} and {paths[1].name}", "put the rows into one file"
+        raise InputError(str(named), found, f"one CSV of labels ({HEADING})", remedy)
+    return paths[0] if paths else named
 
 
 def _read(path: Path) -> list[Clicked]:
@@ -51,7 +59,10 @@ def _read(path: Path) -> list[Clicked]:
     if not formats:
         expected = f"one of {', '.join(sorted({'.csv', *(one.suffix for one in FORMATS)}))}"
         raise InputError(str(path), f"file type {path.suffix!r}", expected, "export the labels in one of these")
-    tools = ", ".join(one.tool for one in formats)
+    if is_own(content):
+        found, expected = f"a CSV of our own ({HEADING}) beside one of a tool", "labels in one of the two layouts"
+        raise InputError(str(path), found, expected, "name the files of one of them alone in source.labels")
+    tools = ", ".join(dict.fromkeys(one.tool for one in formats))
     remedy = "export the labels in one of these, or correct source.labels"
     found = f"{suffix[1:].upper()} of another kind"
     raise InputError(str(path), found, f"that of one of {tools}", remedy)
@@ -60,6 +71,6 @@ def _read(path: Path) -> list[Clicked]:
 def _format_of(path: Path) -> tuple[LabelFormat | None, Any]:
     """The format that a file is in, None where it is in none, and its content as the format takes it."""
     suffix = path.suffix.lower()
-    content = read_json(path) if suffix == ".json" else read_heading(path) if suffix == ".csv" else None
+    content = read_json(path) if suffix == ".json" else read_head(path) if suffix == ".csv" else None
     formats = [one for one in FORMATS if one.suffix == suffix and one.recognises(content)]
     return (formats[0] if formats else None), content

@@ -1,10 +1,13 @@
-"""VGG Image Annotator (VIA), a project or exported annotations: regions that are points, named by an attribute.
+"""VGG Image Annotator 2 (VIA), a project or exported annotations: regions that are points, named by an attribute.
 
-Annotations are exported as JSON or as CSV: a region a row, with the same mappings as JSON in its cells.
+Annotations are exported as JSON or as CSV: a region a row, with the same mappings as JSON in its cells. What VIA 3
+writes is recognised, to be told.
 """
 
 import csv
 import json
+import re
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,17 +16,23 @@ from linepose.inputs.labels.clicked import Clicked
 from linepose.inputs.labels.format import LabelFormat, entries, tell_passed_over
 
 _PROJECT: Final = "_via_img_metadata"
+_PROJECT_3: Final = {"project", "attribute", "file", "metadata", "view"}  # keys of VIA 3
+_HEAD_3: Final = re.compile(r"#\s*(Exported using VGG Image Annotator|CSV_HEADER\s*=\s*metadata_id\b)")
 _REGION: Final = ("region_shape_attributes", "region_attributes")  # columns of CSV
 _LABELS: Final = ("label", "name")  # attributes that are as good as a label
 
 
 def recognises(content: Any) -> bool:
     """Whether a JSON's content is VIA's."""
-    return isinstance(content, dict) and (_PROJECT in content or any("regions" in one for one in entries(content)))
+    if not isinstance(content, dict):
+        return False
+    return _PROJECT in content or set(content) >= _PROJECT_3 or any("regions" in one for one in entries(content))
 
 
 def read(path: Path, content: Any) -> list[Clicked]:
     """The points of one file, other regions passed over; raises InputError naming the region that cannot be used."""
+    if set(content) >= _PROJECT_3:
+        raise _of_version_3(path)
     clicked: list[Clicked] = []
     others = 0
     for picture in entries(content.get(_PROJECT, content)):
@@ -55,22 +64,26 @@ def _text(value: Any) -> str:
     return str(ticked[0]).strip() if len(ticked) == 1 and ticked[0] is not None else ""
 
 
-def recognises_heading(heading: Any) -> bool:
-    """Whether the first line of a CSV is that of VIA's."""
-    return isinstance(heading, str) and {"filename", *_REGION} <= set(_columns(heading))
+def recognises_head(head: Any) -> bool:
+    """Whether one of the lines of a CSV up to its heading is VIA's heading."""
+    return isinstance(head, tuple) and any(_is_heading(line) or _HEAD_3.match(line) for line in head)
 
 
-def read_csv(path: Path, heading: Any) -> list[Clicked]:
-    """As `read`, of a CSV with this heading; raises InputError naming the row that cannot be used."""
-    columns = _columns(heading)
+def read_csv(path: Path, head: Any) -> list[Clicked]:
+    """As `read`, of a CSV with these lines up to its heading; raises InputError naming the row that cannot be used."""
+    place = next((number for number, line in enumerate(head) if _is_heading(line)), None)
+    if place is None:
+        raise _of_version_3(path)
+    columns = _columns(head[place])
     pictures: dict[str, Any] = {}
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.reader(file))[1:]
+            below = islice(file, place + 1, None)
+            rows = list(csv.reader(below))
     except (UnicodeDecodeError, csv.Error) as error:
         found = " ".join(str(error).split())
         raise InputError(str(path), found, "VIA's CSV in UTF-8", "export the annotations anew") from None
-    for number, cells in enumerate(rows, 2):
+    for number, cells in enumerate(rows, place + 2):
         if not any(cells):
             continue
         if len(cells) != len(columns):
@@ -82,6 +95,16 @@ def read_csv(path: Path, heading: Any) -> list[Clicked]:
         if shape:  # a picture without a region has a row of its own
             regions.append({"shape_attributes": shape, "region_attributes": attributes})
     return read(path, pictures)
+
+
+def _of_version_3(path: Path) -> InputError:
+    remedy = "draw the points in VIA 2, or label with another tool (docs/formats.md)"
+    return InputError(str(path), "annotations of VIA 3", "those of VIA 2", remedy)
+
+
+def _is_heading(line: str) -> bool:
+    """Whether it has the columns of VIA 2, which may begin with #."""
+    return {"filename", *_REGION} <= set(_columns(line))
 
 
 def _columns(heading: str) -> list[str]:
@@ -98,5 +121,5 @@ def _mapping(cell: str, where: str) -> dict[str, Any]:
     return value
 
 
-VIA: Final = LabelFormat("VIA", ".json", recognises, read)
-VIA_CSV: Final = LabelFormat("VIA", ".csv", recognises_heading, read_csv)
+VIA: Final = LabelFormat("VIA 2", ".json", recognises, read)
+VIA_CSV: Final = LabelFormat("VIA 2", ".csv", recognises_head, read_csv)

@@ -114,12 +114,46 @@ def via_csv(mark="", shape=None):
     return f"{mark}{heading}\r\n{text.getvalue()}"
 
 
-@pytest.mark.parametrize("mark", ["", "#", "\ufeff"])
+@pytest.mark.parametrize("mark", ["", "#", "\ufeff", "\r\n# of Monday, by hand\r\n\r\n"])
 def test_vias_csv_is_read_as_its_json(tmp_path, mark, caplog):
     (tmp_path / "via.csv").write_text(via_csv(mark), encoding="utf-8")
     labels = read_point_labels(tmp_path, "via.csv", SCANS, 640)
     assert labels.to_numpy().tolist() == [[1, "0", 10, 20], [3, "0", 1, 2], [3, "gate", 100, 30]]
     assert "via.csv: passed over: 1 regions that are no points" in caplog.text
+
+
+VIA_3_CSV = """# Exported using VGG Image Annotator (http://www.robots.ox.ac.uk/~vgg/software/via)
+# SHAPE_ID = {"POINT":1,"RECTANGLE":2}
+# CSV_HEADER = metadata_id,file_list,flags,temporal_coordinates,spatial_coordinates,metadata
+"1_a","[""run-01.png""]",0,"[]","[1,10.5,20.5]","{""1"":""0""}"
+"""
+
+
+def test_a_project_of_via_3_is_told(tmp_path):
+    content = {"project": {"pid": "a"}, "config": {}, "attribute": {}, "file": {}, "metadata": {}, "view": {}}
+    with pytest.raises(InputError, match=r"labels.json: found annotations of VIA 3, expected those of VIA 2"):
+        read(tmp_path, content)
+
+
+def test_our_own_csv_beside_vias_is_told_with_both_layouts(tmp_path):
+    (tmp_path / "a.csv").write_text(via_csv())
+    (tmp_path / "b.csv").write_text("observation,point,u_px,line\n1,0,10,20\n")
+    found = (
+        r"b.csv: found a CSV of our own \(observation,point,u_px,line\) beside one of a tool, .*of one of them alone"
+    )
+    with pytest.raises(InputError, match=found):
+        read_point_labels(tmp_path, "*.csv", SCANS, 640)
+    (tmp_path / "b.csv").write_text("a,b\n1,0\n")
+    with pytest.raises(InputError, match=r"b.csv: found CSV of another kind, expected that of one of VIA 2;"):
+        read_point_labels(tmp_path, "*.csv", SCANS, 640)
+
+
+def test_a_pattern_of_our_own_csv_is_of_one_file(tmp_path):
+    (tmp_path / "a.csv").write_text("observation,point,u_px,line\n1,0,10,20\n")
+    assert read_point_labels(tmp_path, "*.csv", SCANS, 640).to_numpy().tolist() == [[1, 0, 10, 20]]
+    (tmp_path / "b.csv").write_text("observation,point,u_px,line\n3,0,10,20\n")
+    with pytest.raises(InputError, match=r"found 2 files, as a.csv and b.csv, expected one CSV of labels \(obs"):
+        read_point_labels(tmp_path, "*.csv", SCANS, 640)
 
 
 @pytest.mark.parametrize(
@@ -128,6 +162,8 @@ def test_vias_csv_is_read_as_its_json(tmp_path, mark, caplog):
         (via_csv(shape="{"), r"row 2, region_shape_attributes: found '\{', expected a mapping"),
         (via_csv(shape='{"name": "point"}'), r"run-01.png, region 1: found cx=None, expected cx and cy in pixels"),
         (via_csv() + "run-03.png,1,2\r\n", r"via.csv, row 7: found 3 cells, expected 7"),
+        (via_csv("\r\n# a\r\n") + "run-03.png,1\r\n", r"via.csv, row 9: found 2 cells, expected 7"),
+        (VIA_3_CSV, r"via.csv: found annotations of VIA 3, expected those of VIA 2; draw the points in VIA 2, or"),
     ],
 )
 def test_vias_csv_that_cannot_be_used_is_one_line(tmp_path, text, told):
