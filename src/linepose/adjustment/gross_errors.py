@@ -22,9 +22,9 @@ from scipy.special import expit, xlogy
 from linepose.adjustment.thresholds import MEASUREMENT_DIMENSION
 from linepose.arrays import Floats
 
+_FIRST_SHARE, _FIRST_FACTOR = 0.3, 10.0
 _LARGEST_SHARE: Final = 0.6
 _LEAST_FACTOR: Final = 3.0
-_HALF: Final = MEASUREMENT_DIMENSION / 2
 
 
 @dataclass(frozen=True)
@@ -41,18 +41,18 @@ class GrossErrors:
         return self.good + (1 - self.good) / self.factor**2
 
 
-def first_gross_errors(n_measurements: int, share: float, factor: float) -> GrossErrors:
+def first_gross_errors(n_measurements: int) -> GrossErrors:
     """All good, before any is looked at."""
-    return GrossErrors(np.ones(n_measurements), share, factor)
+    return GrossErrors(np.ones(n_measurements), _FIRST_SHARE, _FIRST_FACTOR)
 
 
 def expected_gross_errors(squares: Floats, before: GrossErrors) -> GrossErrors:
     """One step of expectation maximisation from expected squares (L,) of measurements' noise in sigmas."""
-    log_odds = np.log((1 - before.share) / before.share) + 2 * _HALF * np.log(before.factor)
+    log_odds = np.log((1 - before.share) / before.share) + MEASUREMENT_DIMENSION * np.log(before.factor)
     good = expit(log_odds - 0.5 * squares * (1 - before.factor**-2))
     bad = np.sum(1 - good)
     share = float(np.clip(bad / len(good), 1 / (len(good) + 1), _LARGEST_SHARE))
-    factor = np.sqrt(np.sum((1 - good) * squares) / (2 * _HALF * bad)) if bad > 0 else before.factor
+    factor = np.sqrt(np.sum((1 - good) * squares) / (MEASUREMENT_DIMENSION * bad)) if bad > 0 else before.factor
     return GrossErrors(good, share, float(max(factor, _LEAST_FACTOR)))
 
 
@@ -61,4 +61,4 @@ def bound_of_gross_errors(gross: GrossErrors) -> float:
     good, bad = gross.good, 1 - gross.good
     divergence = xlogy(good, good / (1 - gross.share)) + xlogy(bad, bad / gross.share)
     of_weights = -2 * bad * np.log(gross.factor) - np.log(gross.weight)
-    return float(np.sum(_HALF * of_weights - divergence))
+    return float(np.sum(0.5 * MEASUREMENT_DIMENSION * of_weights - divergence))

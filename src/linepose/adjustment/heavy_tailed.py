@@ -1,7 +1,7 @@
 """The estimate under heavy tails, and whether they are there at all."""
 
 from dataclasses import replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,8 @@ SCREEN_NATS: Final = {  # by which heavy tails may look worse at the normal mode
     TailKind.MEASUREMENTS: 10.0,
     TailKind.GROSS_ERRORS: 10.0,  # at the estimate with tails of single measurements
 }
+_OF_NOISE: Final = ("white", "pixel", "lateness")  # levels that single measurements have of their own
+_GROWN: Final = 4.0  # times the level that is started from
 _TRIED: Final = (TailKind.CONSTANTS, TailKind.VIEWS, TailKind.MEASUREMENTS)
 SINGLE_NATS: Final = 40.0  # by which tails of single measurements must win: their many weights are taken for known
 _WEIGHT_TOLERANCE: Final = 0.03  # of a logarithm
@@ -62,45 +64,63 @@ def with_tails(
         if normal is None:
             raise failure or EstimationError("adjustment: no estimate")
         return normal
-    candidates = [normal] if normal is not None else []
-    unsettled: list[tuple[Estimate, TailWeights]] = []
-    for kind in _promising(normal) if normal is not None and _is_sound(normal, guided) else _TRIED:
-        tails = unit_tail_weights(measurements, kind)
-        try:
-            heavy, tails = _heavy_tailed(measurements, guided, start, settings.start, tails, settings)
-            if knowledge.hand is not guided.hand:
-                heavy, tails = _heavy_tailed(
-                    measurements, knowledge, heavy.solution.state, heavy.levels, tails, settings
-                )
-        except EstimationError as error:
-            failure = failure or error
-            continue
-        if kind == TailKind.MEASUREMENTS:
-            heavy, tails = _or_gross_errors(measurements, knowledge, heavy, tails, settings)
-        candidates.append(heavy)
-        if not heavy.converged:
-            unsettled.append((heavy, tails))
+    starts = _starts(measurements, normal, guided, start, settings)
+    heavy, failed = _heavy_candidates(measurements, knowledge, guided, starts, settings)
+    candidates = [*([normal] if normal is not None else []), *(one for one, _ in heavy)]
     if not candidates:
-        raise failure or EstimationError("adjustment: no estimate")
+        raise failure or failed or EstimationError("adjustment: no estimate")
     best = _best(candidates, guided)
-    for one, tails in unsettled:  # where many are bad, weights and levels take long to settle
-        if _preference(one) > _preference(best):
+    for one, tails in heavy:  # where many are bad, weights and levels take long to settle
+        if not one.converged and _preference(one) > _preference(best):
             candidates.append(_settled(measurements, knowledge, one, tails, settings))
     return _best(candidates, guided)
 
 
-def _or_gross_errors(
-    measurements: Measurements, knowledge: Knowledge, one: Estimate, tails: TailWeights, settings: AdjustmentSettings
-) -> tuple[Estimate, TailWeights]:
-    """A heavy-tailed estimate, or that with gross errors where these have more evidence, if any is in sight."""
-    begun = with_gross_errors(tails)
-    if _evidence_in_sight(one, begun) < one.log_evidence - SCREEN_NATS[TailKind.GROSS_ERRORS]:
-        return one, tails
-    try:
-        found = _heavy_tailed(measurements, knowledge, one.solution.state, one.levels, begun, settings)
-    except EstimationError:
-        return one, tails
-    return found if found[0].log_evidence > one.log_evidence else (one, tails)
+class _Start(NamedTuple):
+    """Where the search of a heavy-tailed estimate begins."""
+
+    state: State
+    levels: Levels
+    tails: TailWeights
+
+
+def _starts(
+    measurements: Measurements, normal: Estimate | None, guided: Knowledge, state: State, settings: AdjustmentSettings
+) -> list[_Start]:
+    """The tails that the normal model's estimate does not rule out, from the start; all where it is none or unsound."""
+    sound = normal is not None and _is_sound(normal, guided)
+    kinds = _promising(normal) if normal is not None and sound else _TRIED
+    starts = [_Start(state, settings.start, unit_tail_weights(measurements, kind)) for kind in kinds]
+    if normal is None or not sound or _noise_has_grown(normal, settings.start):
+        as_stated = settings.start._replace(**dict.fromkeys(_OF_NOISE, 1.0))
+        gross = with_gross_errors(unit_tail_weights(measurements, TailKind.MEASUREMENTS))
+        starts.append(_Start(state, as_stated, gross))
+    return starts
+
+
+def _heavy_candidates(
+    measurements: Measurements,
+    knowledge: Knowledge,
+    guided: Knowledge,
+    starts: list[_Start],
+    settings: AdjustmentSettings,
+) -> tuple[list[tuple[Estimate, TailWeights]], EstimationError | None]:
+    """Heavy-tailed estimates, of gross errors also from that with single tails; and the first failure, if any."""
+    found: list[tuple[Estimate, TailWeights]] = []
+    failure = None
+    while starts:
+        state, levels, tails = starts.pop(0)
+        try:
+            one, tails = _heavy_tailed(measurements, guided, state, levels, tails, settings)
+            if knowledge.hand is not guided.hand:
+                one, tails = _heavy_tailed(measurements, knowledge, one.solution.state, one.levels, tails, settings)
+        except EstimationError as error:
+            failure = failure or error
+            continue
+        found.append((one, tails))
+        if tails.kind == TailKind.MEASUREMENTS and _is_promising(one, gross := with_gross_errors(tails)):
+            starts.append(_Start(one.solution.state, one.levels, gross))
+    return found, failure
 
 
 def _best(candidates: list[Estimate], guided: Knowledge) -> Estimate:
@@ -137,20 +157,22 @@ def _preference(one: Estimate) -> float:
 def _promising(normal: Estimate) -> list[TailKind]:
     """The tails that are not so much worse at the normal model's estimate that they need not be tried."""
     measurements = normal.restricted.measurements
-    return [
-        kind
-        for kind in _TRIED
-        if _evidence_in_sight(normal, unit_tail_weights(measurements, kind)) > normal.log_evidence - SCREEN_NATS[kind]
-    ]
+    return [kind for kind in _TRIED if _is_promising(normal, unit_tail_weights(measurements, kind))]
 
 
-def _evidence_in_sight(one: Estimate, tails: TailWeights) -> float:
-    """The evidence of other weights at the pose and levels of an estimate."""
-    measurements = one.restricted.measurements
+def _is_promising(one: Estimate, tails: TailWeights) -> bool:
+    """Whether other weights, at the pose and levels of an estimate, have nearly its evidence or more."""
+    measurements, nats = one.restricted.measurements, SCREEN_NATS[tails.kind]
     for _ in range(_SCREEN_SWEEPS):
         tails = expected_weights(measurements, one.solution.model, one.levels, tails)
     weighted = replace(one.restricted, weights=tails.applied(measurements))
-    return bound_of_weights(measurements, tails) - weighted.negative_log_density(one.log_levels)
+    evidence = bound_of_weights(measurements, tails) - weighted.negative_log_density(one.log_levels)
+    return evidence > one.log_evidence - nats
+
+
+def _noise_has_grown(normal: Estimate, start: Levels) -> bool:
+    """Whether the normal model's noise is so large that it may be many gross errors, which it cannot tell apart."""
+    return any(getattr(normal.levels, name) > _GROWN * getattr(start, name) for name in _OF_NOISE)
 
 
 def _heavy_tailed(

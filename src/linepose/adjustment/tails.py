@@ -43,7 +43,6 @@ from linepose.adjustment.thresholds import DEGREES_OF_FREEDOM, MEASUREMENT_DIMEN
 from linepose.arrays import Floats
 
 CONSTANT_DIMENSION: Final = 6
-_LIGHT: Final = 0.04  # of a measurement that errs five times as far as others
 
 
 class TailKind(IntEnum):
@@ -80,11 +79,8 @@ def unit_tail_weights(measurements: Measurements, kind: TailKind) -> TailWeights
 
 
 def with_gross_errors(tails: TailWeights) -> TailWeights:
-    """The weights with those of single measurements begun anew: gross errors, as many and large as those now light."""
-    light = tails.single < _LIGHT
-    share = float(np.clip(np.mean(light), 1 / (len(light) + 1), 0.5))
-    gross = first_gross_errors(len(light), share, 1 / np.sqrt(_LIGHT))
-    return replace(tails, kind=TailKind.GROSS_ERRORS, single=tails.single, gross=gross)
+    """The weights, from which on those of single measurements follow gross errors."""
+    return replace(tails, kind=TailKind.GROSS_ERRORS, gross=first_gross_errors(len(tails.single)))
 
 
 def expected_weights(measurements: Measurements, model: Model, levels: Levels, before: TailWeights) -> TailWeights:

@@ -76,6 +76,21 @@ def test_markers_too_small_to_be_read_are_found_beside_others_and_covered_ones_a
     assert np.abs(errors_px(target, found, seen)).max() < 0.4
 
 
+def test_points_are_not_made_up_where_something_like_the_print_covers_the_board():
+    target = CharucoSection()
+    survey = survey_of(target, OPPOSITE)
+    seen = scan_of(survey, 1)
+    covered = seen.truth[:, 0] > np.quantile(seen.truth[:, 0], 0.6)
+    light = seen.scan.intensity.copy()
+    left = int(seen.truth[covered, 0].min()) - 3
+    line, u = np.indices(light[:, left:].shape)  # squares half as wide as the board's
+    light[:, left:] = np.where((line // 8 + u // 12) % 2, light.max(), light.min())
+    found = RectifiedDetector(target, hand_view(survey))(Scan(light, seen.scan.time_us, "covered"))
+    row = row_of(target, found.point)
+    assert np.abs(errors_px(target, found, seen)[~covered[row]]).max() < 0.4
+    assert covered[row].sum() <= 1  # that squares lie by chance as the board's corner
+
+
 def test_standing_target():
     target = CHESSBOARD
     survey = survey_of(target, (16,), upright=True)
