@@ -20,7 +20,7 @@ from linepose.adjustment.known_points import KnownPoints
 from linepose.arrays import Floats
 from linepose.errors import EstimationError, InputError
 from linepose.geometry import rotations
-from linepose.simulation.flight import Flight, FlightSettings, simulate_flight
+from linepose.simulation.flight import Flight, FlightSettings, drifting, simulate_flight
 from linepose.simulation.flight_layouts import LAYOUTS, parallel
 
 SHARES = (0.68, 0.95)
@@ -68,6 +68,8 @@ CASES = {
     "crossed": Case(FlightSettings(n_points=200)),
     "crossed-100": Case(FlightSettings(n_points=100)),
     "one-height": Case(FlightSettings(strips=LAYOUTS["one-height"], n_points=200)),
+    "drift-10-s": Case(FlightSettings(n_points=200, navigation_error=drifting(10.0))),
+    "drift-300-s": Case(FlightSettings(n_points=200, navigation_error=drifting(300.0))),
     "far": Case(FlightSettings(n_points=200), far=(20.0, 3.0)),
     "half-wrong": Case(FlightSettings(n_points=200, wrong_share=0.5)),
     "two-strips": Case(FlightSettings(strips=LAYOUTS["two-strips"], n_points=60), terrain_off),

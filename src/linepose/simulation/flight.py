@@ -32,7 +32,7 @@ _WHITE_SHARE: Final = 0.3  # of what the navigation reports
 _MORE: Final = 3  # candidates for each point that is asked for
 
 
-def _drifting(correlation_time_s: float = 60.0) -> NavigationErrorSettings:
+def drifting(correlation_time_s: float = 60.0) -> NavigationErrorSettings:
     """Errors that drift by what is reported, and are white besides."""
     position, euler = _REPORTED.position_m, _REPORTED.euler_rad
 
@@ -72,7 +72,7 @@ class FlightSettings:
     turn_sigma_rad: float = float(np.deg2rad(1.0))
     wrong_share: float = 0.0
     wrong_px: float = 30.0
-    navigation_error: NavigationErrorSettings = field(default_factory=_drifting)
+    navigation_error: NavigationErrorSettings = field(default_factory=drifting)
 
 
 @dataclass(frozen=True)
