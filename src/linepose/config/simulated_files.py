@@ -1,8 +1,8 @@
 """Whether a simulated platform reads what its simulation writes."""
 
-from fnmatch import fnmatch
 from typing import Final
 
+from linepose.inputs.patterns import is_of
 from linepose.inputs.source import ScansSection
 from linepose.settings import SettingsError
 
@@ -26,7 +26,7 @@ def check_simulated_files(source: ScansSection, origin: str) -> None:
         found = "labels, which a simulated flight does not write"
         raise SettingsError(found, "matching", "set source.points: matching", "source.points")
     for key, (name, written) in named.items():
-        if name is not None and not fnmatch(written, name):
+        if name is not None and not is_of(written, name):
             expected = f"{written}, which the simulation writes"
             raise SettingsError(repr(name), expected, "leave it out, or correct it", f"source.{key}")
     if source.time_stamps != "csv":

@@ -2,6 +2,8 @@
 
 import os
 import re
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Final
 
@@ -58,6 +60,20 @@ def matching(folder: Path, pattern: str) -> list[Path]:
             expected = "a name without braces, in which the workflow would look for its own words"
             raise InputError(str(path), "braces in a file's name", expected, "rename the file")
     return found
+
+
+def is_of(name: str, pattern: str) -> bool:
+    """Whether `matching` would find a file of this name, below the folder, by a name or pattern."""
+    parts, wanted = PurePosixPath(name).parts, PurePosixPath(pattern).parts
+    return parts == wanted or _fit(parts, wanted)
+
+
+def _fit(parts: Sequence[str], wanted: Sequence[str]) -> bool:
+    if not wanted:
+        return not parts
+    if wanted[0] == "**":
+        return any(_fit(parts[k:], wanted[1:]) for k in range(len(parts)))
+    return bool(parts) and fnmatchcase(parts[0], wanted[0]) and _fit(parts[1:], wanted[1:])
 
 
 def in_any_case(path: Path) -> Path:

@@ -286,6 +286,7 @@ def test_simulation_is_closed_and_told_with_its_file(tmp_path, change, told):
         ("ladybird-sim", {"covariances": "nav_covs.csv"}, "source.covariances: .*, expected covariances.csv"),
         ("ladybird-sim", {"time_stamps": "hyspex"}, "source.time_stamps: found hyspex, expected csv"),
         ("drone-sim", {"scans": "scans/observation-*.hdr"}, "source.scans: .*, expected scans/strip-01.hdr"),
+        ("drone-sim", {"scans": "*-01.hdr"}, "source.scans: .*, expected scans/strip-01.hdr"),
         ("drone-sim", {"points": "labels"}, "source.points: found labels, .*; set source.points: matching"),
     ],
 )
@@ -294,6 +295,9 @@ def test_a_simulated_platform_reads_what_its_simulation_writes(tmp_path, like, s
         (tmp_path / f"{name}.yaml").write_bytes((PLATFORMS / f"{name}.yaml").read_bytes())
     (tmp_path / "robot.yaml").write_text(yaml.safe_dump({"like": like, "source": source}))
     assert re.search(told, message_of(tmp_path, "robot"))
+    for pattern in ("scans/**/*.hdr", "./scans/*.hdr"):
+        (tmp_path / "robot.yaml").write_text(yaml.safe_dump({"like": like, "source": {"scans": pattern}}))
+        assert load_platform(tmp_path, "robot").source.scans == pattern
     unused = {"labels": "mine.csv", "points": "detection"} if like == "ladybird-sim" else {"labels": "mine.csv"}
     (tmp_path / "robot.yaml").write_text(yaml.safe_dump({"like": like, "source": unused}))
     assert load_platform(tmp_path, "robot").source.labels == "mine.csv"

@@ -3,7 +3,7 @@ import os
 import pytest
 
 from linepose.errors import InputError
-from linepose.inputs.patterns import matching
+from linepose.inputs.patterns import is_of, matching
 from linepose.inputs.source import ScansSection
 from linepose.settings import validated
 
@@ -28,6 +28,39 @@ def test_a_file_with_signs_of_patterns_is_found_by_its_name(tmp_path):
         (tmp_path / name).touch()
     assert matching(tmp_path, "run[1].hdr") == [tmp_path / "run[1].hdr"]
     assert matching(tmp_path, "*.hdr") == [tmp_path / "run1.hdr", tmp_path / "run[1].hdr"]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "is_found"),
+    [
+        ("scans/strip-01.hdr", True),
+        ("./scans/*.hdr", True),
+        ("scans//strip-0[1-3].hdr", True),
+        ("scans/**/*.hdr", True),
+        ("**/strip-01.hdr", True),
+        ("**/**/*.hdr", True),
+        ("s*/strip-??.hdr", True),
+        ("*.hdr", False),
+        ("*-01.hdr", False),
+        ("scans*", False),
+        ("scans/*/*.hdr", False),
+        ("**/scans", False),
+        ("Scans/*.hdr", False),
+        ("scans/strip-01.hdr/*", False),
+    ],
+)
+def test_a_name_fits_a_pattern_as_its_file_is_found(tmp_path, pattern, is_found):
+    """With what the file system says as the reference."""
+    (tmp_path / "scans").mkdir()
+    file = tmp_path / "scans" / "strip-01.hdr"
+    file.touch()
+    assert (file in matching(tmp_path, pattern)) == is_found
+    assert is_of("scans/strip-01.hdr", pattern) == is_found
+
+
+def test_a_name_with_signs_of_patterns_fits_itself():
+    assert is_of("run[1].hdr", "run[1].hdr")
+    assert is_of("run1.hdr", "run[1].hdr")
 
 
 def test_a_file_with_braces_is_told(tmp_path):
