@@ -95,6 +95,7 @@ def _run(snakefile: Path, root: Path, chosen: Sequence[str], arguments: Sequence
     from linepose.cli.platform_lines import PlatformLines
     from linepose.cli.snakemake_process import BY_KEYBOARD, follow_snakemake
     from linepose.cli.stage_lines import StageLines
+    from linepose.errors import one_line
 
     several = len(chosen) > 1
     logs = root / "results" / "logs"
@@ -116,20 +117,24 @@ def _run(snakefile: Path, root: Path, chosen: Sequence[str], arguments: Sequence
                 tell(lines.hear(message))
                 show()
 
-            code = follow_snakemake(snakefile, root, arguments, log, hear, show)
+            followed = follow_snakemake(snakefile, root, arguments, log, hear, show)
     else:
-        code = follow_snakemake(snakefile, root, arguments, log, lambda message: tell(lines.hear(message)))
-    if code == BY_KEYBOARD:
+        followed = follow_snakemake(snakefile, root, arguments, log, lambda message: tell(lines.hear(message)))
+    if followed.log_fault is not None:
+        tell(
+            f"linepose: the run's messages could not all be kept: {one_line(followed.log_fault) or followed.log_fault}"
+        )
+    if followed.code == BY_KEYBOARD:
         tell("linepose: run stopped by the keyboard; the same command goes on")
-        raise typer.Exit(code)
+        raise typer.Exit(followed.code)
     if isinstance(lines, PlatformLines):
         for line in lines.unheard(chosen, begun_s):
             tell(line)
-    if code:
+    if followed.code:
         for line in [] if lines.told_why else lines.unexplained:
             tell(line)
         if lines.log or not lines.told_why:
-            place = root / lines.log if lines.log else log
+            place = root / lines.log if lines.log else None if followed.log_fault else log
             what = f"of {len(chosen)} platforms" if several else chosen[0]
-            tell(f"linepose: run {what} stopped: the fault stands above, and in {place}")
+            tell(f"linepose: run {what} stopped: the fault stands above{f', and in {place}' if place else ''}")
         raise typer.Exit(1)

@@ -9,6 +9,7 @@ import termios
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -20,6 +21,14 @@ BY_KEYBOARD: Final = 128 + 2
 _PATIENCE_S: Final = 10.0
 _ROWS_AND_COLUMNS: Final = (24, 64)  # beside the stages at work on a line of 80
 _BAR: Final = re.compile(r"\d+%\||\d+it ")  # of tqdm
+
+
+@dataclass(frozen=True)
+class Followed:
+    """How a run that was followed has ended: its exit code, and why its messages could not all be kept, if so."""
+
+    code: int
+    log_fault: OSError | None
 
 
 def run_snakemake(snakefile: Path, root: Path, arguments: Sequence[str]) -> int:
@@ -34,29 +43,31 @@ def follow_snakemake(
     log: Path,
     hear: Callable[[str], None],
     hear_bar: Callable[[str], None] | None = None,
-) -> int:
+) -> Followed:
     """Run a workflow as `run_snakemake` does, with its messages in a file and told one by one to `hear`.
 
     With `hear_bar` its jobs take the error stream for a terminal and draw progress bars there, which are told to it
-    and not kept. Raises OSError naming the file, after the run's end, where it could not take them all.
+    and not kept. A file that cannot take all messages, as on a full disk, is told with the exit code.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
+    file = _Log(log)
     source, sink = os.pipe() if hear_bar is None else _terminal()
     try:
         child = _start(snakefile, root, ["--nocolor", *arguments], sink)
     finally:
         os.close(sink)
-    with contextlib.closing(_Log(log)) as file, contextlib.closing(_Source(source)) as told:
+    with contextlib.closing(file), contextlib.closing(_Source(source)) as told:
         try:
             _hear_all(told.pieces(), file.keep, hear, hear_bar)
-            return child.wait()
+            code = child.wait()
         except KeyboardInterrupt:  # which a terminal sends to the child too; it goes on telling until it has ended
             end = threading.Timer(_PATIENCE_S, child.kill)
             end.start()
             _hear_all(told.pieces(), file.keep, lambda _: None, None)
             child.wait()
             end.cancel()
-            return BY_KEYBOARD
+            code = BY_KEYBOARD
+    return Followed(code, file.fault)
 
 
 def files_of_workflow(snakefile: Path, root: Path, arguments: Sequence[str]) -> set[str]:
@@ -74,29 +85,33 @@ def _terminal() -> tuple[int, int]:
 
 
 class _Log:
-    """A file of messages; one that it cannot take, as on a full disk, and those after it are not kept."""
+    """A file of messages; one that it cannot take, as on a full disk, and those after it are not kept.
+
+    `fault` is why, with the file's name.
+    """
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._file = path.open("w", 1, encoding="utf-8")
-        self._fault: OSError | None = None
+        self.fault: OSError | None = None
 
     def keep(self, message: str) -> None:
         """Write a message, unless one before it could not be."""
-        if self._fault is None:
+        if self.fault is None:
             try:
                 self._file.write(message)
             except OSError as error:
-                self._fault = error
+                self._give_up(error)
 
     def close(self) -> None:
-        """End the file; raises the OSError of a message that could not be kept, with the file's name."""
+        """End the file."""
         try:
             self._file.close()
         except OSError as error:
-            self._fault = self._fault or error
-        if self._fault is not None:
-            raise OSError(self._fault.errno, os.strerror(self._fault.errno or 0), str(self._path))
+            self._give_up(error)
+
+    def _give_up(self, error: OSError) -> None:
+        self.fault = self.fault or OSError(error.errno, os.strerror(error.errno or 0), str(self._path))
 
 
 class _Source:
