@@ -10,7 +10,8 @@ with stage(snakemake) as log:
     from linepose.inputs.local_frame import MAP_FRAME
     from linepose.inputs.observed_points import SCAN_POINTS
     from linepose.inputs.source import LabelledViewsSection
-    from linepose.pipeline.load import map_frame_table, read_reported, with_navigation
+    from linepose.pipeline.load import read_reported, with_navigation
+    from linepose.pipeline.survey_frame import map_frame_table
     from linepose.survey.navigation import NAVIGATION_SIGMA, median_sigma_table
     from linepose.survey.observations import OBSERVATIONS
     from linepose.tables import read_table, write_table

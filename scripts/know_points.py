@@ -7,7 +7,8 @@ from adapter import stage
 with stage(snakemake) as log:
     from linepose.config.platform import Platform
     from linepose.inputs.local_frame import MAP_FRAME
-    from linepose.pipeline.known_points import known_points, survey_frame
+    from linepose.pipeline.known_points import known_points
+    from linepose.pipeline.survey_frame import survey_frame
     from linepose.survey.observations import OBSERVATIONS, survey_from_table
     from linepose.survey.point_knowledge import KNOWN_POINTS, knowledge_table
     from linepose.tables import read_table, write_table

@@ -13,8 +13,9 @@ from pydantic import Field, PositiveInt
 from linepose.adjustment.levels import LEVEL_NAMES
 from linepose.estimation.noise_models import ADJUSTMENT as ADJUSTMENT_MODEL
 from linepose.experiments.estimate import estimate_fields, estimate_row
-from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs, log_rows
+from linepose.experiments.section import Section
 from linepose.experiments.splits import SPLITS, random_splits, sigma_factor
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
 from linepose.pipeline.adjusted_schemas import ADJUSTED

@@ -18,8 +18,9 @@ from pydantic import Field, PositiveFloat, PositiveInt
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.estimation.estimator import Estimator
-from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs, log_rows
+from linepose.experiments.section import Section
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.geometry.rotations import matrix_from_rotation_vector, rotation_vector_from_matrix

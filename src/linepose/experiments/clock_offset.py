@@ -23,9 +23,10 @@ from linepose.estimation.optimise import Search, laplace_covariance, optimise
 from linepose.estimation.sampling import SamplingSettings, sample, stage_seed
 from linepose.experiments.clock_offset_evidence import ClockOffsetEvidence
 from linepose.experiments.estimate import observation_list
-from linepose.experiments.experiment import ESTIMATE, Experiment, Section
+from linepose.experiments.experiment import ESTIMATE, Experiment
 from linepose.experiments.inputs import Inputs
 from linepose.experiments.jackknife import jackknife_sigma
+from linepose.experiments.section import Section
 from linepose.geometry.distance import mahalanobis_distance
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS, SIGMA_COLUMNS
 from linepose.likelihood.base import Likelihood

@@ -2,64 +2,18 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Final
 
 import pandas as pd
 import pyarrow as pa
-from pydantic import Field, create_model
 
 from linepose.config.platform import Platform
 from linepose.estimation.noise_models import noise_model
 from linepose.experiments.inputs import Inputs
-from linepose.settings import Settings, validated
-
-Value = TypeVar("Value", covariant=True)
+from linepose.experiments.section import Section
 
 ESTIMATE: Final = ("observations", "outliers", "optima", "samples")  # what most experiments start from
 SETTINGS: Final = ("seed", "search", "sampling", "adjustment")  # what of config.yaml an estimate takes
-
-
-def settings_class(name: str, fields: Mapping[str, Any]) -> type[Settings]:
-    """A closed class of settings with these fields, each a type and a pydantic field."""
-    model: type[Settings] = create_model(name, __base__=Settings, **fields)
-    return model
-
-
-@dataclass(frozen=True)
-class Section(Generic[Value]):
-    """A key below `experiments` in a platform's file: its value's type, the default, and what it means."""
-
-    key: str
-    value: type[Value]
-    default: Value | None
-    description: str
-
-    @property
-    def field(self) -> tuple[Any, Any]:
-        """The key as a field of a pydantic model; null leaves the experiment out."""
-        return self.value | None, Field(self.default, description=self.description)
-
-    @cached_property
-    def _model(self) -> type[Settings]:
-        return settings_class(self.key, {self.key: self.field})
-
-    def of(self, platform: Platform) -> Value | None:
-        """What a platform's file says, the default where it says nothing; None where the experiment is left out.
-
-        Raises InputError for what no such section has.
-        """
-        return self.read({key: value for key, value in platform.experiments.items() if key == self.key})
-
-    def values(self, platform: Platform) -> Any:
-        """The same as plain values, defaults included."""
-        known = {key: value for key, value in platform.experiments.items() if key == self.key}
-        return validated(self._model, known, "experiments").model_dump(mode="json")[self.key]
-
-    def read(self, values: Mapping[str, Any]) -> Value | None:
-        """The same from the mapping of this key alone."""
-        value: Value | None = getattr(validated(self._model, dict(values), "experiments"), self.key)
-        return value
 
 
 @dataclass(frozen=True)

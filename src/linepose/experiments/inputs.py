@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import pandas as pd
 import pyarrow as pa
@@ -16,13 +16,11 @@ from linepose.estimation.estimator import Conditions, Estimator
 from linepose.estimation.optimise import Search
 from linepose.estimation.sampling import SamplingSettings
 from linepose.experiments.accepted import Accepted, Reference, read_accepted, read_reference
+from linepose.experiments.section import Section
 from linepose.geometry.camera import Camera
 from linepose.pipeline.batches import run_batches
 from linepose.pipeline.platform_estimator import platform_conditions, platform_estimator
 from linepose.tables import read_table
-
-if TYPE_CHECKING:
-    from linepose.experiments.experiment import Section
 
 Value = TypeVar("Value")
 
@@ -70,11 +68,11 @@ class Inputs:
         """A result by the name that the entry's `needs` has for it."""
         return read_table(self.files[name], schema)
 
-    def settings(self, section: "Section[Value]") -> Value | None:
+    def settings(self, section: Section[Value]) -> Value | None:
         """What the platform's file says under a section's key."""
         return section.read({section.key: self.sections[section.key]})
 
-    def required(self, section: "Section[Value]") -> Value:
+    def required(self, section: Section[Value]) -> Value:
         """The same of the section that asked for this experiment."""
         value = self.settings(section)
         if value is None:

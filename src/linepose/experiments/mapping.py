@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from pydantic import Field, PositiveFloat
 
 from linepose.arrays import Floats
-from linepose.experiments.experiment import ESTIMATE, Experiment, Section
+from linepose.experiments.experiment import ESTIMATE, Experiment
 from linepose.experiments.inputs import Inputs, log_rows
+from linepose.experiments.section import Section
 from linepose.geometry import lens
 from linepose.geometry.camera import Camera, normalised_from_pixel, rays
 from linepose.geometry.plane import Plane, fit_plane, fit_plane_by_height, intersect

@@ -20,7 +20,8 @@ from linepose.experiments import (
     truth_error,
     uncertainty,
 )
-from linepose.experiments.experiment import Experiment, Section, settings_class
+from linepose.experiments.experiment import Experiment
+from linepose.experiments.section import Section, settings_class
 from linepose.settings import faults_of, validated
 
 EXPERIMENTS: Final[tuple[Experiment, ...]] = (

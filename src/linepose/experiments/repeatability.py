@@ -17,8 +17,9 @@ from linepose.estimation.estimator import Estimator
 from linepose.experiments.accepted import Accepted
 from linepose.experiments.agreement import AGREEMENT, agreement
 from linepose.experiments.estimate import estimate_fields, estimate_row, observation_list
-from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs
+from linepose.experiments.section import Section
 from linepose.experiments.subsets import SubsetSettings, chosen_subsets
 from linepose.settings import Settings, SettingsError
 from linepose.tables import texts

@@ -14,8 +14,9 @@ from pydantic import Field
 
 from linepose.estimation.estimator import Estimator
 from linepose.experiments.estimate import estimate_fields, estimate_row
-from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs, log_rows
+from linepose.experiments.section import Section
 from linepose.geometry.camera import Camera
 from linepose.geometry.distance import euclidean_distance_m, geodesic_angle_rad, mahalanobis_distance
 from linepose.settings import Settings

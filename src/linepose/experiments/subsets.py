@@ -14,8 +14,9 @@ from linepose.errors import InputError
 from linepose.estimation.estimator import Estimator
 from linepose.experiments.accepted import Accepted
 from linepose.experiments.estimate import estimate_fields, estimate_row, observation_list
-from linepose.experiments.experiment import Experiment, Section
+from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs, log_rows
+from linepose.experiments.section import Section
 from linepose.settings import Settings, SettingsError
 from linepose.survey.body_angles import BODY_ANGLES, body_angles_rad
 from linepose.survey.observations import Survey

@@ -13,8 +13,7 @@ from linepose.config.platform import Platform
 from linepose.errors import InputError
 from linepose.inputs.source import ScansSection
 from linepose.inputs.terrain import read_terrain
-from linepose.pipeline.known_points import survey_frame
-from linepose.pipeline.load import map_frame_table
+from linepose.pipeline.survey_frame import map_frame_table, survey_frame
 
 _APART: Final = 25  # lines between places of a strip at which the model is asked
 _COVERED: Final = 0.5  # of these places, below which a height model is not the survey's

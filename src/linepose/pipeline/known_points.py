@@ -4,7 +4,7 @@ import logging
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import pandas as pd
@@ -13,16 +13,15 @@ from linepose.adjustment.known_points import KnownPoints
 from linepose.adjustment.measurements import Measurements, measurements_from_survey
 from linepose.adjustment.start import start_points
 from linepose.arrays import Floats
-from linepose.config.map_frame import MapFrameSection
 from linepose.config.platform import Platform
 from linepose.config.points import GroundSection
 from linepose.errors import InputError
 from linepose.geometry import camera as cameras
 from linepose.geometry import rotations
 from linepose.inputs.control_points import read_control_points
-from linepose.inputs.local_frame import LocalFrame, projected_frame, tangent_frame
+from linepose.inputs.local_frame import LocalFrame
 from linepose.inputs.terrain import read_terrain
-from linepose.pipeline.load import map_frame_table
+from linepose.pipeline.survey_frame import map_frame_table, survey_frame
 from linepose.survey.observations import Survey, survey_from_table
 from linepose.survey.point_knowledge import PointKnowledge, arrays_of, board_of
 from linepose.survey.targets.base import GridSection, TargetSection
@@ -35,22 +34,6 @@ _DAMPING: Final = 1e-4
 _ROUNDS: Final = 5
 
 log = logging.getLogger(__name__)
-
-
-def survey_frame(section: Mapping[str, Any] | None, table: pd.DataFrame) -> LocalFrame | None:
-    """Where north, east, down are on the Earth: as the platform's file says, or its log; None if neither does.
-
-    section: `map_frame` of the file; table: of the log, columns as in `MAP_FRAME`.
-    """
-    if section is not None:
-        said = MapFrameSection.model_validate(section)
-        return tangent_frame(said.origin) if said.origin is not None else projected_frame(said.crs or "")
-    if table.empty:
-        return None
-    row = table.iloc[0]
-    if pd.isna(row["latitude_deg"]):
-        return projected_frame(str(row["crs"]))
-    return tangent_frame((float(row["latitude_deg"]), float(row["longitude_deg"]), float(row["height_m"])))
 
 
 def names_of_points(survey: Survey) -> list[str]:

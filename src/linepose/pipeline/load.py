@@ -83,19 +83,6 @@ def read_log(platform: Platform, folder: Path) -> NavigationLog:
     return read_record(platform, folder).log
 
 
-def map_frame_table(platform: Platform, folder: Path) -> pd.DataFrame:
-    """Where the log says that north, east, down are; no row where it does not.
-
-    A projected system, or EPSG:4979 and the origin of local coordinates: latitude, longitude (deg), height (m).
-    Columns as in `MAP_FRAME`.
-    """
-    record = read_navigation(platform.source, folder) if isinstance(platform.source, ScansSection) else None
-    columns = ["crs", "latitude_deg", "longitude_deg", "height_m"]
-    if record is None or record.crs is None:
-        return pd.DataFrame({name: pd.Series(dtype=str if name == "crs" else float) for name in columns})
-    return pd.DataFrame([[record.crs, *(record.origin or (None, None, None))]], columns=columns)
-
-
 def read_reported(platform: Platform, folder: Path) -> NavigationCovariances:
     """The navigation covariances of a platform; raises InputError."""
     source, settings = platform.source, platform.navigation

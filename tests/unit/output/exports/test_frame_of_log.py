@@ -9,7 +9,7 @@ from linepose.errors import InputError
 from linepose.inputs.local_frame import MAP_FRAME
 from linepose.output.exports.points import frame_of
 from linepose.pipeline.calibration import Calibration
-from linepose.pipeline.load import map_frame_table
+from linepose.pipeline.survey_frame import map_frame_table
 from linepose.tables import read_table, write_table
 from unit import made_up
 

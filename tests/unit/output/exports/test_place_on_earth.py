@@ -12,7 +12,7 @@ from linepose.inputs import local_frame
 from linepose.inputs.local_frame import MAP_FRAME, geodetic_from_local, local_from_geodetic, tangent_frame
 from linepose.inputs.navigation import read_navigation
 from linepose.pipeline.calibration import Calibration
-from linepose.pipeline.load import map_frame_table
+from linepose.pipeline.survey_frame import map_frame_table
 from linepose.survey.observations import POSITION_COLUMNS
 from linepose.tables import write_table
 from unit import made_up
