@@ -84,11 +84,28 @@ def curvature(adjusted: AdjustedEvidence) -> Check:
 
 def camera(adjusted: AdjustedEvidence) -> Check:
     """Whether the intrinsics agree with the platform's file."""
-    name = WORDS.get(adjusted.camera_parameter, adjusted.camera_parameter)
-    if adjusted.camera_sigmas == 0:
-        return Check("Camera", Level.GOOD, "The camera is taken from the platform's file: the survey does not test it.")
-    found = f"Of the camera {name} lies {adjusted.camera_sigmas:.1f} sigmas from the platform's file"
-    if adjusted.camera_sigmas <= CAMERA_SIGMAS:
+    name, sigmas = WORDS.get(adjusted.camera_parameter, adjusted.camera_parameter), adjusted.camera_sigmas
+    if sigmas is not None and isnan(sigmas):
+        return Check(
+            "Camera",
+            Level.CARE,
+            "Whether the camera is as the platform's file has it cannot be told: its sigmas cannot be had.",
+            "See to the other checks that failed first.",
+            "whether the camera is as in the platform's file cannot be told",
+        )
+    if adjusted.camera_held and (sigmas is None or sigmas <= CAMERA_SIGMAS):
+        held = " and ".join(WORDS.get(one, one) for one in adjusted.camera_held)
+        return Check(
+            "Camera",
+            Level.CARE,
+            f"The sigmas of {held} in the platform's file are so small that no survey can test them.",
+            "Give in camera.sigmas how well it is known; a wrong camera moves the pose.",
+            f"the survey cannot test {held}",
+        )
+    if sigmas is None:
+        return Check("Camera", Level.GOOD, "The camera is taken from the platform's file: the survey hardly tests it.")
+    found = f"Of the camera {name} lies {sigmas:.1f} sigmas from the platform's file"
+    if sigmas <= CAMERA_SIGMAS:
         return Check("Camera", Level.GOOD, f"{found}, as far as the survey tests it.")
     return Check(
         "Camera",
@@ -96,7 +113,7 @@ def camera(adjusted: AdjustedEvidence) -> Check:
         f"{found}: the survey contradicts it.",
         "Check section camera against the data sheet or the lens's calibration (focal length, pixel pitch, field of "
         "view, binning), and how well camera.sigmas says that it is known; a wrong camera moves the pose.",
-        f"{name} is {adjusted.camera_sigmas:.1f} sigmas from the platform's file",
+        f"{name} is {sigmas:.1f} sigmas from the platform's file",
     )
 
 

@@ -11,11 +11,15 @@ from linepose.arrays import Floats
 from linepose.geometry.camera import Camera
 from linepose.geometry.camera_sigmas import ALWAYS_ESTIMATED
 from linepose.geometry.lens import COEFFICIENTS
+from linepose.pipeline.checks import CAMERA_SIGMAS
 from linepose.tables import floats, optional_floats, texts
 
 NAMES: Final = (*ALWAYS_ESTIMATED, *COEFFICIENTS)
 IDENTIFIABLE_SHARE: Final = 0.5  # of the prior's sigma, below which the survey has told an intrinsic
-_LEAST_GAIN: Final = 0.02  # of the variance, below which that of the draws of the levels hides it
+_TELLING_GAIN: Final = 0.02  # of the prior's variance, from which on its sigma alone makes a test
+_LEAST_GAIN: Final = 1e-12  # of the prior's variance, below which rounding hides it
+_LARGEST_ERROR: Final = {"principal_point_px": 500.0} | dict.fromkeys(COEFFICIENTS, 1.0)  # that data sheets have, ...
+_LARGEST_SHARE: Final = 0.5  # ... and of the focal length such a share
 _COVARIANCE: Final = tuple(f"covariance_with_{name}" for name in NAMES)
 _BY: Final = tuple(
     f"{step}_by_one" for step in ("forward_m", "right_m", "down_m", "turn_x_rad", "turn_y_rad", "turn_z_rad")
@@ -62,19 +66,63 @@ class AdjustedIntrinsics:
         return self.sigma < IDENTIFIABLE_SHARE * self.prior_sigma
 
     @property
-    def moved_sigmas(self) -> Floats:
-        """How far each (I,) lies from its prior, in sigmas of how far what the survey says of it lets it move.
+    def survey_sigma(self) -> Floats:
+        """One standard deviation of each (I,) by all but its own prior; at least this where rounding hides it."""
+        gain = self._gain
+        return self.prior_sigma * np.sqrt((1 - gain) / gain)
 
-        The estimate of a linear problem lies off the prior's mean by the difference of prior and posterior variance.
-        0 where the survey says next to nothing of it.
+    @property
+    def moved_sigmas(self) -> Floats:
+        """How far what all else says of each (I,) lies from its prior, in sigmas of both together; see `is_tested`.
+
+        The estimate is the mean of the two by their information: it lies off its prior by the gain times their
+        difference, whose variance is the prior's divided by the gain. NaN where the sigmas are not known.
         """
-        gain = 1 - (self.sigma / self.prior_sigma) ** 2
-        moved = (self.estimate - self.prior) / self.prior_sigma / np.sqrt(np.maximum(gain, _LEAST_GAIN))
-        return np.where(gain < _LEAST_GAIN, 0.0, moved)
+        return (self.estimate - self.prior) / (self.prior_sigma * np.sqrt(self._gain))
+
+    @property
+    def is_tested(self) -> np.ndarray:
+        """Whether the survey could contradict each prior (I,): by its sigma, or an error such as data sheets have."""
+        return self._could_tell & ~self._is_hidden
+
+    @property
+    def is_held(self) -> np.ndarray:
+        """Whether each prior (I,) is so tight that what a survey says of it, be it much, cannot be computed."""
+        return self._could_tell & self._is_hidden
+
+    @property
+    def _could_tell(self) -> np.ndarray:
+        largest = _LARGEST_ERROR | {"focal_length_m": _LARGEST_SHARE * self.prior[self.names.index("focal_length_m")]}
+        error = np.array([largest[name] for name in self.names])
+        return np.asarray((self._gain >= _TELLING_GAIN) | (CAMERA_SIGMAS * self.survey_sigma < error))
+
+    @property
+    def _is_hidden(self) -> np.ndarray:
+        """Whether rounding hides what the survey says of each (I,)."""
+        return self._gain <= _LEAST_GAIN
+
+    @property
+    def _gain(self) -> Floats:
+        """The share of each prior's variance (I,) that the survey has taken; not below what rounding leaves of it."""
+        return np.maximum(1 - (self.sigma / self.prior_sigma) ** 2, _LEAST_GAIN)
 
     def camera(self, given: Camera) -> Camera:
         """The camera of a platform's file with these in place of the file's."""
         return given.replaced(**dict(zip(self.names, map(float, self.estimate), strict=True)))
+
+
+def farthest(found: AdjustedIntrinsics) -> tuple[str, float | None]:
+    """The tested intrinsic that lies farthest from its prior, and how many sigmas; NaN where its sigma is not known.
+
+    No name, and None, where the survey tests none.
+    """
+    moved = np.abs(found.moved_sigmas)
+    if np.any(unknown := np.isnan(moved)):
+        return found.names[int(np.argmax(unknown))], float("nan")
+    if not np.any(found.is_tested):
+        return "", None
+    most = int(np.argmax(np.where(found.is_tested, moved, -1.0)))
+    return found.names[most], float(moved[most])
 
 
 def intrinsics_table(found: AdjustedIntrinsics) -> pd.DataFrame:

@@ -52,7 +52,7 @@ def error_tables(
 ) -> dict[str, pd.DataFrame]:
     """What the errors were: levels, intrinsics, and each view's and each measurement's corrections and weight."""
     return {
-        "adjusted_intrinsics": intrinsics_table(_intrinsics(found, camera)),
+        "adjusted_intrinsics": intrinsics_table(adjusted_intrinsics(found, camera)),
         "levels": level_table(found, settings),
         "adjusted_views": view_table(survey, found, errors),
         "adjusted_measurements": measurement_table(survey, found),
@@ -108,7 +108,8 @@ def measurement_table(survey: Survey, found: Adjustment) -> pd.DataFrame:
     )
 
 
-def _intrinsics(found: Adjustment, camera: Camera) -> AdjustedIntrinsics:
+def adjusted_intrinsics(found: Adjustment, camera: Camera) -> AdjustedIntrinsics:
+    """The intrinsics that an adjustment found, beside those of the camera that it was given."""
     names = (*ALWAYS_ESTIMATED, *found.coefficients)
     return AdjustedIntrinsics(
         names,

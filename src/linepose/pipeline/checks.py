@@ -58,7 +58,8 @@ class AdjustedEvidence:
     pareto_shape: of the levels; drift_known: whether there are times, without which drift is not allowed for;
     navigation_error: of the whole navigation error, in what is reported; lost: single measurements that have lost
     their weight, the lightest first, and n_measurements: of how many they are; camera_sigmas: of the intrinsic
-    that lies farthest from the platform's file, camera_parameter.
+    that lies farthest from the platform's file, camera_parameter, None where the survey tests none, NaN where it cannot
+    be had; camera_held: intrinsics whose sigmas in the file are so small that the survey's part cannot be computed.
     """
 
     least_eigenvalue: float
@@ -70,8 +71,9 @@ class AdjustedEvidence:
     lost: tuple[LostMeasurement, ...] = ()
     n_measurements: int = 0
     target_misfit: float | None = None
-    camera_sigmas: float = 0.0
+    camera_sigmas: float | None = None
     camera_parameter: str = ""
+    camera_held: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from linepose.adjustment.thresholds import DOUBTFUL_WEIGHT
 from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
-from linepose.pipeline.adjusted_intrinsics import INTRINSICS, intrinsics_from_table
+from linepose.pipeline.adjusted_intrinsics import INTRINSICS, farthest, intrinsics_from_table
 from linepose.pipeline.adjusted_schemas import LEVELS, MEASUREMENTS, VIEWS
 from linepose.pipeline.calibration import INLIERS, Calibration
 from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence, LostMeasurement
@@ -125,7 +125,7 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:
     single = single[~single["observation"].isin(doubtful["observation"])]
     lost = single[single["weight"] < DOUBTFUL_WEIGHT].sort_values("weight", kind="stable")
     intrinsics = intrinsics_from_table(results.table("adjusted_intrinsics", INTRINSICS))
-    moved = np.nan_to_num(np.abs(intrinsics.moved_sigmas))  # not known where the sigmas cannot be had
+    parameter, moved = farthest(intrinsics)
     return AdjustedEvidence(
         float(chain["least_eigenvalue"].iloc[0]),
         float(chain["effective_sample_size"].min()),
@@ -142,8 +142,9 @@ def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:
         ),
         n_measurements=len(single),
         target_misfit=float(misfit) if np.isfinite(misfit := chain["target_misfit_sigmas"].iloc[0]) else None,
-        camera_sigmas=float(moved.max()),
-        camera_parameter=intrinsics.names[int(np.argmax(moved))],
+        camera_sigmas=moved,
+        camera_parameter=parameter,
+        camera_held=tuple(name for name, held in zip(intrinsics.names, intrinsics.is_held, strict=True) if held),
     )
 
 

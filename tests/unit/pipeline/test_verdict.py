@@ -142,6 +142,8 @@ def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
     [
         ({"least_eigenvalue": 0.29}, "Curvature", Level.BAD, "Add observations"),
         ({"camera_sigmas": 3.1, "camera_parameter": "focal_length_m"}, "Camera", Level.CARE, "field of view, binning"),
+        ({"camera_sigmas": float("nan")}, "Camera", Level.CARE, "other checks"),
+        ({"camera_held": ("focal_length_m",)}, "Camera", Level.CARE, "camera.sigmas how well it is known"),
         ({"effective_draws": 19.0}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
         ({"drift_known": False}, "Times", Level.CARE, "Give the times"),
         ({"least_eigenvalue": float("nan")}, "Curvature", Level.BAD, "other checks"),
@@ -176,7 +178,17 @@ def test_a_camera_is_told_to_fit_as_far_as_the_survey_tests_it():
     check = named(judge(replace(ADJUSTED, adjusted=replace(ADJUSTED.adjusted, **fits))), "Camera")
     assert check.level == Level.GOOD
     assert check.found.startswith("Of the camera the focal length lies 2.9 sigmas from the platform's file")
-    assert "the survey does not test it" in named(judge(ADJUSTED), "Camera").found
+    assert "the survey hardly tests it" in named(judge(ADJUSTED), "Camera").found
+
+
+def test_a_contradicted_camera_is_told_before_one_that_cannot_be_tested():
+    held = {"camera_held": ("principal_point_px",), "camera_parameter": "focal_length_m"}
+    for sigmas, said in (
+        (2.9, "sigmas of the principal point in the platform's file are so small"),
+        (3.1, "contradicts"),
+    ):
+        change = replace(ADJUSTED.adjusted, camera_sigmas=sigmas, **held)
+        assert said in named(judge(replace(ADJUSTED, adjusted=change)), "Camera").found
 
 
 def test_a_known_target_that_fits_is_told():

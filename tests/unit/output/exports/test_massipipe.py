@@ -92,7 +92,7 @@ def test_what_it_has_no_place_for_is_told_in_metres(exported):
         np.testing.assert_allclose(its_places(read, body_deg) + shift, ours, atol=MILLIMETRE)
 
 
-@pytest.mark.parametrize("position_m", [(0.0, 0.0, -0.8), (0.3, -0.4, 0.5)])
+@pytest.mark.parametrize("position_m", [(0.0, 0.0, -0.8), (0.3, -0.4, 0.5), (-0.3, 0.4, 0.5)])
 def test_an_arm_of_a_vehicle_that_is_not_level_is_as_far_off_as_the_file_tells(exported, position_m):
     read, calibration, text = exported(CAMERAS_DEG[0], position_m, **CENTRED)
     (told,) = re.findall(r"level, and up to (\d\.\d{3}) m at a roll or pitch of 10 deg", text)
