@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from linepose.errors import InputError
-from linepose.inputs.nmea_content import content_of, time_of_day_us
+from linepose.inputs.nmea_content import SENTENCES, content_of, time_of_day_us
 from linepose.inputs.nmea_dates import dated_runs, unix_us
+from linepose.inputs.text_files import lines_of
 
 _DAY_US: Final = 86_400_000_000
 _LINES_BEFORE: Final = 300  # the sentence that says the day of those
@@ -39,7 +40,7 @@ def sentences(path: Path, day: datetime.date | None, key: str) -> Iterator[Sente
     """The sentences of a file; `day` is that of the first where none says it, and `key` the key that gives it.
 
     Text before a sentence on its line is passed over, and lines that are none or have another check sum are counted.
-    Raises InputError where there is none, or the day is not known.
+    Raises InputError where there is none, the day is not known, or a line has no end.
     """
     read = faults = 0
     days = _Days(_dated(path, day, key), day)
@@ -47,22 +48,21 @@ def sentences(path: Path, day: datetime.date | None, key: str) -> Iterator[Sente
         found, expected = "no sentence with a date (RMC, ZDA)", "the day of the first sentence"
         raise InputError(str(path), found, expected, f"set {key}")
     time_us: int | None = None
-    with path.open(encoding="ascii", errors="replace") as file:
-        for number, line in enumerate(file, start=1):
-            _, sign, text = line.strip().partition("$")
-            if not sign:
-                faults += bool(line.strip())
-                continue
-            try:
-                content = content_of(text)
-            except ValueError:
-                faults += 1
-                continue
-            read += 1
-            of_day_us = time_of_day_us(content)
-            if of_day_us is not None:
-                time_us = days.time_us(number, of_day_us)
-            yield Sentence(number, tuple(text.partition("*")[0].split(",")), content, time_us)
+    for number, line in enumerate(lines_of(path, SENTENCES), start=1):
+        _, sign, text = line.strip().partition("$")
+        if not sign:
+            faults += bool(line.strip())
+            continue
+        try:
+            content = content_of(text)
+        except ValueError:
+            faults += 1
+            continue
+        read += 1
+        of_day_us = time_of_day_us(content)
+        if of_day_us is not None:
+            time_us = days.time_us(number, of_day_us)
+        yield Sentence(number, tuple(text.partition("*")[0].split(",")), content, time_us)
     if not read:
         remedy = "give a log of NMEA sentences, or correct the format"
         raise InputError(str(path), "no NMEA sentence", "lines that begin with $", remedy)

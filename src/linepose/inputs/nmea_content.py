@@ -2,7 +2,9 @@
 
 import datetime
 import re
-from typing import Any
+from typing import Any, Final
+
+SENTENCES: Final = "NMEA sentences"
 
 
 def content_of(text: str) -> Any:

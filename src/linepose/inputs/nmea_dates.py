@@ -15,7 +15,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Final
 
-from linepose.inputs.nmea_content import content_of, date_of, time_of_day_us
+from linepose.inputs.nmea_content import SENTENCES, content_of, date_of, time_of_day_us
+from linepose.inputs.text_files import lines_of
 
 _TIMED: Final = re.compile(r"\$(?:..(?:GGA|RMC|ZDA)|PASHR),(\d\d)(\d\d)(\d\d)")
 _DATED: Final = re.compile(r"\$..(?:RMC,\d{6}[^,]*,(\w?)(?:,[^,]*){6},(\d{6})|ZDA,\d{6}[^,]*,(\d\d),(\d\d),\d\d(\d\d))")
@@ -98,35 +99,34 @@ def _runs(path: Path, most_characters: int | None = None) -> Iterator[Run]:
     open_runs: dict[bool, Run] = {}
     stretch = midnights = read = 0
     last_s: int | None = None
-    with path.open(encoding="ascii", errors="replace") as file:
-        for number, line in enumerate(file, start=1):
-            read += len(line)
-            if most_characters is not None and read > most_characters:
-                break
-            timed = _TIMED.search(line)
-            if timed is None:
-                continue
-            of_day_s = (int(timed[1]) * 60 + int(timed[2])) * 60 + int(timed[3])
-            if last_s is not None:
-                step_s = (of_day_s - last_s + _DAY_S // 2) % _DAY_S - _DAY_S // 2
-                goes_on = -_LATE_S <= step_s <= _PAUSE_S
-                midnights = midnights + (last_s + step_s - of_day_s) // _DAY_S if goes_on else 0
-                stretch += not goes_on
-            last_s = of_day_s
-            dated = _DATED.search(line)
-            if dated is None:
-                continue
-            has_fix, day = dated[1] != "V", dated[2] or dated[3] + dated[4] + dated[5]
-            run = open_runs.get(has_fix)
-            if run is not None and (run.day, run.stretch, run.midnights) == (day, stretch, midnights):
-                run.count += 1
-                continue
-            said = _time_of(line)
-            if said is None:
-                continue
-            start = said[0].toordinal() - midnights
-            open_runs[has_fix] = Run(number, unix_us(*said), day, has_fix, stretch, midnights, start)
-            yield open_runs[has_fix]
+    for number, line in enumerate(lines_of(path, SENTENCES), start=1):
+        read += len(line)
+        if most_characters is not None and read > most_characters:
+            break
+        timed = _TIMED.search(line)
+        if timed is None:
+            continue
+        of_day_s = (int(timed[1]) * 60 + int(timed[2])) * 60 + int(timed[3])
+        if last_s is not None:
+            step_s = (of_day_s - last_s + _DAY_S // 2) % _DAY_S - _DAY_S // 2
+            goes_on = -_LATE_S <= step_s <= _PAUSE_S
+            midnights = midnights + (last_s + step_s - of_day_s) // _DAY_S if goes_on else 0
+            stretch += not goes_on
+        last_s = of_day_s
+        dated = _DATED.search(line)
+        if dated is None:
+            continue
+        has_fix, day = dated[1] != "V", dated[2] or dated[3] + dated[4] + dated[5]
+        run = open_runs.get(has_fix)
+        if run is not None and (run.day, run.stretch, run.midnights) == (day, stretch, midnights):
+            run.count += 1
+            continue
+        said = _time_of(line)
+        if said is None:
+            continue
+        start = said[0].toordinal() - midnights
+        open_runs[has_fix] = Run(number, unix_us(*said), day, has_fix, stretch, midnights, start)
+        yield open_runs[has_fix]
 
 
 def _time_of(line: str) -> tuple[datetime.date, int] | None:

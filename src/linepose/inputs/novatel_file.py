@@ -6,7 +6,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, BinaryIO, Final
+
+from linepose.errors import InputError
+from linepose.inputs.text_files import LONGEST_LINE
 
 _MESSAGE: Final = re.compile(rb"([#%]\w+A(?:_\d)?,[^\r\n]*\*[0-9a-fA-F]{8})(\r*\n|\r+(?!\n)|\Z)")  # and its line end
 _MOST_TOGETHER: Final = 100_000
@@ -21,7 +24,10 @@ class UnknownBytes:
 
 
 def messages(path: Path) -> Iterator[Any]:
-    """Every message of a log in its order, and `UnknownBytes` where there is none."""
+    """Every message of a log in its order, and `UnknownBytes` where there is none.
+
+    Raises InputError naming the place of a megabyte without one, as of zeros.
+    """
     from novatel_edie import UnknownBytes as Unknown
     from novatel_edie.oem import FileParser
 
@@ -52,12 +58,28 @@ def _with_line_ends(path: Path) -> Iterator[Path]:
     The parser finds messages by CR LF, which the check sum does not cover. Binary messages are kept byte by byte.
     """
     with path.open("rb") as file:
-        whole = all(found[2] == b"\r\n" for line in file for found in _MESSAGE.finditer(line))
+        whole = all(found[2] == b"\r\n" for line in _lines(file, path) for found in _MESSAGE.finditer(line))
     if whole:
         yield path
         return
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / path.name
         with path.open("rb") as file, copy.open("wb") as framed:
-            framed.writelines(_MESSAGE.sub(rb"\1\r\n", line) for line in file)
+            framed.writelines(_MESSAGE.sub(rb"\1\r\n", line) for line in _lines(file, path))
         yield copy
+
+
+def _lines(file: BinaryIO, path: Path) -> Iterator[bytes]:
+    """The bytes of a log, cut behind line ends; raises InputError naming the place of a megabyte without any."""
+    rest, before = b"", 0
+    while piece := file.readline(LONGEST_LINE):
+        rest += piece
+        end = max(rest.rfind(b"\n"), rest.rfind(b"\r")) + 1
+        if not end and len(rest) >= LONGEST_LINE:
+            found, remedy = f"{LONGEST_LINE} bytes without a message", "give the log itself, or cut it there"
+            raise InputError(f"{path}, byte {before + 1}", found, "an ASCII or binary log of NovAtel", remedy)
+        if end:
+            yield rest[:end]
+        rest, before = rest[end:], before + end
+    if rest:
+        yield rest

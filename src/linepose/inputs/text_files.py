@@ -3,6 +3,8 @@
 import codecs
 import os
 import re
+from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 from typing import Final
 
@@ -10,7 +12,7 @@ from linepose.errors import InputError
 
 _MOST_BYTES: Final = 10_000_000
 _FIRST_BYTES: Final = 4096
-_LONGEST_LINE: Final = 1_000_000
+LONGEST_LINE: Final = 1_000_000  # of a log with a gap of zeros too, which a recorder leaves that loses its power
 
 
 def small_text(path: Path, what: str, key: str) -> str:
@@ -49,19 +51,30 @@ def check_text(
         with path.open("rb") as file:
             head = file.read(_FIRST_BYTES)
             if in_lines and not re.search(rb"[\r\n]", head):
-                head += file.readline(_LONGEST_LINE)
+                head += file.readline(LONGEST_LINE)
     except OSError as error:
         raise _unreadable(path, what, error) from None
     is_utf_16 = head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     if b"\0" in head[:_FIRST_BYTES] and not is_utf_16:
         raise InputError(str(path), "bytes that are not text", what, remedy)
-    if in_lines and len(head) > _LONGEST_LINE:
-        raise too_long(f"{path}, line 1", what, remedy)
+    if in_lines and len(head) > LONGEST_LINE:
+        raise _too_long(f"{path}, line 1", what, remedy)
 
 
-def too_long(place: str, what: str, remedy: str) -> InputError:
-    """The error of a line so long that it is none."""
-    return InputError(place, f"no line end within {_LONGEST_LINE} bytes", f"lines of {what}", remedy)
+def lines_of(path: Path, what: str, encoding: str = "ascii", errors: str = "replace") -> Iterator[str]:
+    """The lines of a text as they are read; raises InputError naming one that has no end within a megabyte."""
+    with path.open(encoding=encoding, errors=errors) as file:
+        for number in count(1):
+            line = file.readline(LONGEST_LINE + 1)
+            if len(line) > LONGEST_LINE:
+                raise _too_long(f"{path}, line {number}", what, "give the log itself, or cut it there")
+            if not line:
+                return
+            yield line
+
+
+def _too_long(place: str, what: str, remedy: str) -> InputError:
+    return InputError(place, f"no line end within {LONGEST_LINE} bytes", f"lines of {what}", remedy)
 
 
 def _unreadable(path: Path, what: str, error: OSError) -> InputError:

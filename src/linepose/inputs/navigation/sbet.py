@@ -6,6 +6,7 @@ The heading is counted from the wander frame; true heading = platform heading - 
 is 10 doubles: seconds of the week, north, east, down (m), three velocities, roll, pitch, heading (arc minutes).
 """
 
+import errno
 import logging
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -88,10 +89,11 @@ def _records(path: Path, n_values: int, what: str) -> Floats:
     """
     size, record = path.stat().st_size, 8 * n_values
     count, left_out = divmod(size, record)
-    table: Floats = (
-        np.memmap(path, dtype="<f8", mode="r", shape=(count, n_values)) if count else np.empty((0, n_values))
-    )
+    table = _mapped(path, (count, n_values), what) if count else np.empty((0, n_values))
     time_s = table[:, 0]
+    if count and not np.any(table[0]):
+        remedy = "restore the file: it was not written, or is of another format"
+        raise InputError(f"{path}, record 1", "zeros alone", f"{what}: seconds of the GPS week", remedy)
     if not count or (left_out and np.any(np.diff(time_s) < 0)):
         found = f"{size} bytes, {count} whole records and {left_out} bytes more"
         remedy = "restore the file: it was cut or is of another format"
@@ -101,4 +103,15 @@ def _records(path: Path, n_values: int, what: str) -> Floats:
     for row in np.flatnonzero(~np.isfinite(time_s) | (time_s < 0) | (time_s > 2 * gps_time.WEEK_US / 1e6))[:1]:
         found = f"{time_s[row]:g} as its time"
         raise InputError(f"{path}, record {row + 1}", found, f"{what}: seconds of the GPS week", "check the format")
+    return table
+
+
+def _mapped(path: Path, shape: tuple[int, int], what: str) -> Floats:
+    try:
+        table: Floats = np.memmap(path, dtype="<f8", mode="r", shape=shape)
+    except OSError as error:
+        if error.errno != errno.ENOMEM:
+            raise
+        found, remedy = f"{path.stat().st_size} bytes", "raise the limit (ulimit -v), or cut the file into parts"
+        raise InputError(str(path), found, f"{what} that the process's memory can map", remedy) from None
     return table

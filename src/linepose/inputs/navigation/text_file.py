@@ -15,10 +15,11 @@ import pandas as pd
 from pydantic import Field, PositiveInt, field_validator
 
 from linepose.errors import InputError
-from linepose.inputs.text_files import check_text
+from linepose.inputs.text_files import check_text, lines_of
 from linepose.settings import Settings
 
 _LINES_ABOVE: Final = 2_000  # within which the first row of values must stand
+_WHAT: Final = "a table of text"
 _BRIEFLY: Final = 60
 _ROWS_AT_ONCE: Final = 50_000
 _BLANKS: Final = r"\s+"
@@ -89,12 +90,15 @@ def read_text(
 
 
 def first_lines(path: Path, encoding: str) -> list[str]:
-    """The first lines of a text file without their ends; raises UnicodeError for another encoding."""
+    """The first lines of a text file without their ends.
+
+    Raises UnicodeError for another encoding, InputError for what is no text.
+    """
     is_utf_8 = encoding.lower() in {"utf-8", "utf8"}
     if is_utf_8:
-        check_text(path, "a table of text")
-    with path.open(encoding="utf-8-sig" if is_utf_8 else encoding) as file:
-        return [line.rstrip("\r\n") for line in islice(file, _LINES_ABOVE)]
+        check_text(path, _WHAT)
+    lines = lines_of(path, _WHAT, "utf-8-sig" if is_utf_8 else encoding, "strict")
+    return [line.rstrip("\r\n") for line in islice(lines, _LINES_ABOVE)]
 
 
 def _fault(path: Path, error: Exception) -> InputError:

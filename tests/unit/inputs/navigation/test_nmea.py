@@ -277,6 +277,16 @@ def test_what_is_left_out_is_counted(tmp_path, caplog):
             {"date": DAY},
             r"log.nmea: found no PASHR with roll, pitch and heading",
         ),
+        (
+            "\0" * 1_000_001,
+            {},
+            r"log.nmea, line 1: found no line end within 1000000 bytes, expected lines of NMEA sent",
+        ),
+        (
+            "".join(drive()) + "$" * 1_000_001,
+            {"date": DAY},
+            r"log.nmea, line \d+: found no line end .*; give the log itself, or cut it there",
+        ),
         (gga(1) + pashr(2) + gga(3), {"date": DAY}, r"PASHR: found no message between two fixes at most 1.5 s apart"),
     ],
 )

@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from linepose.errors import InputError
 from linepose.geometry import rotations
+from linepose.inputs import novatel_file
 from linepose.inputs.axes import matrix_from_enu_flu
 from linepose.inputs.navigation import read_navigation
 from linepose.inputs.navigation.novatel import NovatelSection, read_messages
@@ -134,6 +135,11 @@ def test_what_is_no_message_is_told(tmp_path, drive, caplog):
     [
         (b"", "found no NovAtel message"),
         (b"time,north\n1,2\n" * 50, "found no NovAtel message"),
+        (
+            bytes(1_000_000),
+            "a.gps, byte 1: found 1000000 bytes without a message, expected .*; give the log itself, or",
+        ),
+        (b"\n" * 20 + bytes(1_000_020), "a.gps, byte 21: found 1000000 bytes without a message"),
         ("aligning", "found 4 INSPVA messages without an INS solution"),
         ("stdev", "found no INSPVA, expected INSPVA, INSPVAS or INSPVAX messages"),
     ],
@@ -174,7 +180,7 @@ CHECK_SUMS = (b"5975c36e", b"2c437dd7", b"b318be1c", b"c62e00a5", b"56de3fcb")
 
 
 @pytest.mark.parametrize("end", [b"\r\n", b"\n", b"\r\r\n", b"\r", b"\r\n\r\n", b"\n\n", b"\n  "])
-def test_line_ends_of_ascii_messages_do_not_matter(tmp_path, end):
+def test_line_ends_of_ascii_messages_do_not_matter(tmp_path, monkeypatch, end):
     lines = [LINE.replace(b"{n}", b"%d" % n).replace(b"{crc}", crc) for n, crc in enumerate(CHECK_SUMS)]
     (tmp_path / "run.gps").write_bytes(end.join([*lines, b""]))
     messages = read_messages(tmp_path / "run.gps")
@@ -182,6 +188,8 @@ def test_line_ends_of_ascii_messages_do_not_matter(tmp_path, end):
     assert messages.path == tmp_path / "run.gps"
     record = read_navigation(section("run.gps"), tmp_path)
     assert np.diff(record.log.time_us).tolist() == [10_000] * 4
+    monkeypatch.setattr(novatel_file, "LONGEST_LINE", len(lines[0]) + 10)  # as of a log of more than that
+    assert len(read_messages(tmp_path / "run.gps").rows["INSPVA"]) == 5
     np.testing.assert_allclose(record.log.euler_rad[0], np.deg2rad([1, 2, 40]), atol=1e-9)
 
 

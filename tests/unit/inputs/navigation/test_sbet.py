@@ -1,3 +1,5 @@
+import errno
+
 import numpy as np
 import pytest
 
@@ -79,6 +81,11 @@ def test_week_is_that_of_the_scans(tmp_path, drive):
         ),
         ("sigma", {"rms": "a.rms"}, r"a.rms, covariance 1: found .* or no number, expected .*; remove the record$"),
         ("empty", {}, r"a.sbet: found 0 bytes"),
+        (
+            "zeros",
+            {},
+            r"a.sbet, record 1: found zeros alone, expected an SBET trajectory: .*; restore the file: it was",
+        ),
     ],
 )
 def test_broken_file_is_one_line(tmp_path, drive, file, keys, told):
@@ -90,6 +97,8 @@ def test_broken_file_is_one_line(tmp_path, drive, file, keys, told):
     elif file == "a.sbet" and not keys:
         table[0, 0] = np.nan
         table.tofile(tmp_path / file)
+    elif file == "zeros":
+        (tmp_path / "a.sbet").write_bytes(bytes(136 * 3))
     elif file == "degrees":
         table[:, 1:3] = np.rad2deg(table[:, 1:3])
         table.tofile(tmp_path / "a.sbet")
@@ -105,6 +114,17 @@ def test_broken_file_is_one_line(tmp_path, drive, file, keys, told):
     with pytest.raises(InputError, match=told) as error:
         read_navigation(section(**{"gps_week": int(drive.week[0]), "origin": ORIGIN} | keys), tmp_path)
     assert "\n" not in str(error.value)
+
+
+def test_a_file_that_memory_cannot_map_is_told(tmp_path, drive, monkeypatch):
+    def full(*_, **__):
+        raise OSError(errno.ENOMEM, "Cannot allocate memory")
+
+    writers.write_sbet(tmp_path / "a.sbet", drive)
+    size = (tmp_path / "a.sbet").stat().st_size
+    monkeypatch.setattr(np, "memmap", full)
+    with pytest.raises(InputError, match=rf"a.sbet: found {size} bytes, expected an SBET trajectory that .*ulimit -v"):
+        read_navigation(section(), tmp_path)
 
 
 def test_what_was_cut_within_a_record_is_read_up_to_it(tmp_path, drive, caplog):
