@@ -25,7 +25,9 @@ from linepose.inputs.navigation.autopilot_poses import (
 from linepose.inputs.navigation.format import NavigationFormat
 from linepose.inputs.navigation.record import NavigationRecord, geodetic_record
 
+_WHAT: Final = "a whole ArduPilot log (.bin)"
 _FORMAT_MESSAGE: Final = b"\xa3\x95\x80"  # every log begins with the description of its messages
+_HEAD_BYTES: Final = 1_000_000  # more would be searched for it byte by byte
 _FIX_3D: Final = 3
 _FIELDS: Final = {
     "ATT": ("TimeUS", "Roll", "Pitch", "Yaw"),
@@ -77,6 +79,9 @@ def _flight(path: Path) -> FlightLog:
 def _rows(path: Path) -> dict[str, list[list[float]]]:
     """The fields of the messages of each kind; of several receivers the first."""
     reader = package("pymavlink.DFReader", path)
+    with path.open("rb") as file:
+        if _FORMAT_MESSAGE not in file.read(_HEAD_BYTES):
+            raise InputError(str(path), "no description of messages", _WHAT, "give the log itself, or restore it")
     rows: dict[str, list[list[float]]] = {name: [] for name in _FIELDS}
     try:
         with told_in_one_line(path, "pymavlink"):
@@ -87,5 +92,5 @@ def _rows(path: Path) -> dict[str, list[list[float]]]:
                     rows[name].append([float(getattr(message, one)) for one in _FIELDS[name]])
     except Exception as error:  # pymavlink has no kind of its own
         found = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(str(path), found[:200], "a whole ArduPilot log (.bin)", "restore the log") from None
+        raise InputError(str(path), found[:200], _WHAT, "restore the log") from None
     return rows

@@ -3,9 +3,13 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from linepose.errors import InputError, LineposeError
+
+_WHAT: Final = "a whole ROS 1 or ROS 2 bag"
+_REMEDY: Final = "restore the bag, or repair its index (rosbag reindex, ros2 bag reindex)"
+_BEGINNINGS: Final = {".bag": b"#ROSBAG V2.0\n", ".db3": b"SQLite format 3\0", ".mcap": b"\x89MCAP0\r\n"}
 
 
 @contextmanager
@@ -14,6 +18,7 @@ def opened(path: Path) -> Iterator[Any]:
     from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_typestore
 
+    _check_beginning(path)
     in_folder = path.suffix in {".db3", ".mcap"} and (path.parent / "metadata.yaml").is_file()
     try:
         with AnyReader(
@@ -24,8 +29,17 @@ def opened(path: Path) -> Iterator[Any]:
         raise
     except Exception as error:  # of broken bags, the reader lets out whatever its decoders raise
         found = " ".join(str(error).split()) or type(error).__name__
-        remedy = "restore the bag, or repair its index (rosbag reindex, ros2 bag reindex)"
-        raise InputError(str(path), found, "a whole ROS 1 or ROS 2 bag", remedy) from None
+        raise InputError(str(path), found, _WHAT, _REMEDY) from None
+
+
+def _check_beginning(path: Path) -> None:
+    """Raise InputError for a file that does not begin as its kind does: the reader would look for a line end in it."""
+    beginning = _BEGINNINGS.get(path.suffix)
+    if beginning is None or not path.is_file():
+        return
+    with path.open("rb") as file:
+        if file.read(len(beginning)) != beginning:
+            raise InputError(str(path), f"bytes that begin no {path.suffix}", _WHAT, _REMEDY)
 
 
 def topics_of(bag: Any, kinds: Sequence[str]) -> list[str]:

@@ -134,6 +134,13 @@ def test_file_of_another_kind_is_one_line(tmp_path, name, content):
     assert "\n" not in str(error.value)
 
 
+def test_zeros_are_no_log_of_ardupilot_without_a_search_byte_by_byte(tmp_path, monkeypatch):
+    monkeypatch.setattr("linepose.inputs.navigation.ardupilot.package", lambda name, path: None)
+    (tmp_path / "flight.log").write_bytes(bytes(100))
+    with pytest.raises(InputError, match=r"flight.log: found no description of messages, expected a whole ArduPilot"):
+        read("ardupilot", tmp_path)
+
+
 @pytest.mark.parametrize(("name", "share", "noise"), [("px4", 0.8, b"\xff"), ("ardupilot", 0.5, b"\0\1\2")])
 def test_broken_parts_are_told_in_one_line_and_nothing_is_printed(tmp_path, name, share, noise, caplog, capfd):
     _, write, _, package = FORMATS[name]

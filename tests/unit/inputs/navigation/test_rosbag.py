@@ -119,7 +119,7 @@ def text(path, _):
         (two_topics, r"found 2 topics of nav_msgs/msg/Odometry \(/a, /b\).*set source.navigation.odometry_topic"),
         (repeated_times, r"record 2: found time .*, expected a time after the record before it"),
         (cut, r"run.bag: found .*, expected a whole ROS 1 or ROS 2 bag; restore the bag, or repair its index"),
-        (text, r"run.bag: found .*, expected a whole ROS 1 or ROS 2 bag"),
+        (text, r"run.bag: found bytes that begin no .bag, expected a whole ROS 1 or ROS 2 bag; restore the bag"),
     ],
 )
 def test_broken_bag_is_one_line(tmp_path, drive, write, told):
