@@ -40,17 +40,19 @@ def read_points(platform: Platform, folder: Path) -> pd.DataFrame:
     scans, refine = select_scans(folder, source.scans, source.left_out), REFINEMENTS[source.refinement]
     line_times = line_times_of(source)
     if source.points == "detection":
-        detector = detector_of(platform.target, source.refinement, lambda: _hand_view(platform, source, folder))
+        detector = detector_of(platform.target, source.refinement, lambda: hand_view(platform, folder))
         return detected_points(scans, detector, n_pixels, line_times)
     labels = read_point_labels(folder, source.labels, scans, n_pixels, source.point_id)
     return refined_points(scans, labels, refine, n_pixels, line_times)
 
 
-def _hand_view(platform: Platform, source: ScansSection, folder: Path) -> "HandView":
+def hand_view(platform: Platform, folder: Path) -> "HandView":
+    """The camera at its hand-measured pose with the log of a platform with scans; raises InputError."""
     from linepose.inputs.targets.rectified import HandView
 
-    log = read_navigation(source, folder, platform.navigation.corrections).log
-    return HandView(platform.intrinsics(), platform.start_pose(), log, source.target_range_m)
+    assert isinstance(platform.source, ScansSection)
+    log = read_record(platform, folder).log
+    return HandView(platform.intrinsics(), platform.start_pose(), log, platform.source.target_range_m)
 
 
 def with_navigation(points: pd.DataFrame, platform: Platform, folder: Path) -> pd.DataFrame:

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.widgets import TextBox
 
 from linepose.arrays import Floats
+from linepose.cli.labelling.scan_view import ScanView
 from linepose.cli.labelling.session import Session
-from linepose.inputs.scans.scan_files import Intensity
 from linepose.inputs.targets.refine import Refine
 from linepose.survey.targets.registry import Target
 from linepose.survey.targets.rings import RingsSection
@@ -31,7 +31,7 @@ _PLACED, _NEXT = "#ffb000", "#dc267f"
 class LabelWindow:
     """A figure in which the points of each scan are clicked in their order; every change is saved at once.
 
-    `scans` are the scan files by observation, `read` gives a scan's intensities, `refine` the centre of the dot near a
+    `scans` are the scan files by observation, `read` gives a scan as it is shown, `refine` the centre of the dot near a
     click, and `save` keeps the session.
     """
 
@@ -40,7 +40,7 @@ class LabelWindow:
         figure: Figure,
         session: Session,
         scans: Mapping[int, Path],
-        read: Callable[[Path], Intensity],
+        read: Callable[[Path], ScanView],
         refine: Refine,
         save: Callable[[Session], None],
         target: Target,
@@ -123,13 +123,13 @@ class LabelWindow:
             self._name.set_val("")
             self._draw()
 
-    def _place(self, u_px: float, line: float) -> None:
-        n_lines, n_pixels = self._intensity.shape
-        if not (-0.5 <= u_px <= n_pixels - 0.5 and -0.5 <= line <= n_lines - 0.5):
+    def _place(self, column: float, row: float) -> None:
+        clicked = self._view.to_scan(column, row)
+        if clicked is None:
             return
-        found = self._refine(self._intensity, u_px, line) if self.snaps else None
+        found = self._refine(self._view.intensity, *clicked) if self.snaps else None
         self.message = "no dot near there: the point is where you clicked" if self.snaps and found is None else ""
-        self.session.place(*(found or (u_px, line)))
+        self.session.place(*(found or clicked))
         self._changed()
 
     def _skip(self) -> None:
@@ -159,15 +159,20 @@ class LabelWindow:
             self._draw()
 
     def _show_scan(self) -> None:
-        self._intensity = self._read(self.scans[self.session.observation])
-        low, high = np.percentile(self._intensity, _CONTRAST_PERCENT)
+        self._view = self._read(self.scans[self.session.observation])
+        low, high = np.percentile(self._view.intensity, _CONTRAST_PERCENT)
         self.axes.clear()
         self._marks = []
         self.axes.imshow(
-            self._intensity, cmap="gray", vmin=low, vmax=max(high, low + 1e-6), aspect="auto", interpolation="nearest"
+            self._view.picture,
+            cmap="gray",
+            vmin=low,
+            vmax=max(high, low + 1e-6),
+            aspect="auto",
+            interpolation="nearest",
         )
-        self.axes.set_xlabel("pixel")
-        self.axes.set_ylabel("scan line")
+        self.axes.set_xlabel(self._view.axes[0])
+        self.axes.set_ylabel(self._view.axes[1])
         self._keep_home()
         self._draw()
 
@@ -182,11 +187,14 @@ class LabelWindow:
         for mark in self._marks:
             mark.remove()
         self._marks = []
-        for point, (u_px, line) in self.session.here().items():
-            self._marks += self.axes.plot(u_px, line, "+", color=_PLACED, markersize=11, markeredgewidth=1.2)
+        for point, label in self.session.here().items():
+            place = self._view.to_picture(*label)
+            if place is None:
+                continue
+            self._marks += self.axes.plot(*place, "+", color=_PLACED, markersize=11, markeredgewidth=1.2)
             self._marks.append(
                 self.axes.annotate(
-                    str(point), (u_px, line), xytext=(6, 6), textcoords="offset points", color=_PLACED, fontsize=10
+                    str(point), place, xytext=(6, 6), textcoords="offset points", color=_PLACED, fontsize=10
                 )
             )
         self.axes.set_title(self._title(), loc="left", fontsize=11)
@@ -201,7 +209,9 @@ class LabelWindow:
         done = session.name is None
         task = "all points done: n for the next scan" if done else f"click {is_new}point {session.name}"
         snapping = "" if self.snaps else "    (not snapping)"
-        return f"{name}, {place}    {task}{snapping}" + (f"\n{self.message}" if self.message else "")
+        return f"{name}, {place}    {task}{snapping}" + "".join(
+            f"\n{one}" for one in (self.message, self._view.note) if one
+        )
 
     def _draw_board(self) -> None:
         """The target as seen from its front, so that a corner mark tells which way round the scan is; or a list."""

@@ -9,6 +9,7 @@ from typing import Final
 import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import ndimage
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
@@ -33,6 +34,16 @@ class LinePoses:
     centre_m: Floats
     matrix: Floats
 
+    def at(self, line: Floats) -> "LinePoses":
+        """Camera poses at fractional lines (n,), linear between two lines."""
+        first = np.clip(np.floor(line).astype(int), 0, len(self.centre_m) - 2)
+        share = line - first
+        centre, matrix = (
+            one[first] + share.reshape(-1, *[1] * (one.ndim - 1)) * (one[first + 1] - one[first])
+            for one in (self.centre_m, self.matrix)
+        )
+        return LinePoses(centre, matrix)
+
 
 @dataclass(frozen=True)
 class Rectified:
@@ -51,6 +62,26 @@ class Rectified:
     def world(self, place: ArrayLike) -> Floats:
         """World points (..., 3) of places (..., 2), column and row."""
         return self.surface.to_world(self.first_m + self.cell_m * np.asarray(place, dtype=float))
+
+    def in_scan(self, place: ArrayLike) -> Floats:
+        """Raw pixels and lines (n, 2) of places (n, 2), column and row, between cells too; NaN where none was seen."""
+        at = np.asarray(place, dtype=float)[:, ::-1].T
+        return np.stack(
+            [
+                ndimage.map_coordinates(one, at, output=float, order=1, cval=np.nan, prefilter=False)
+                for one in (self.u_px, self.line)
+            ],
+            axis=-1,
+        )
+
+    def on_map(self, position: Floats, poses: LinePoses, camera: Camera) -> Floats:
+        """Places (n, 2), column and row, of raw pixels and lines (n, 2); NaN where the camera sees no surface."""
+        rays = pixel_directions(camera, position[:, 0])
+        seen = [
+            _on_surface(poses.at(line[None]), ray[None], self.surface)[0, 0]
+            for line, ray in zip(position[:, 1], rays, strict=True)
+        ]
+        return (np.array(seen) - self.first_m) / self.cell_m
 
 
 def line_poses(position_m: Floats, euler_rad: Floats, pose: Floats) -> LinePoses:

@@ -40,7 +40,7 @@ def fit_board_pose(
 
     None where no plane can be started from.
     """
-    at = _poses_at(poses, position[:, 1])
+    at = poses.at(position[:, 1])
     rays = pixel_directions(camera, position[:, 0])
     starts = [start for start in (_start(board_m, rays, at, one) for one in surfaces) if start is not None]
     fits = [_fitted(board_m, rays, at, camera.focal_length_px, *start) for start in starts]
@@ -49,17 +49,6 @@ def fit_board_pose(
 
 def _squared(fit: BoardPose) -> float:
     return float(np.sum(fit.misfit_px**2))
-
-
-def _poses_at(poses: LinePoses, line: Floats) -> LinePoses:
-    """Camera poses at fractional lines (n,), linear between two lines."""
-    first = np.clip(np.floor(line).astype(int), 0, len(poses.centre_m) - 2)
-    share = line - first
-    centre, matrix = (
-        one[first] + share.reshape(-1, *[1] * (one.ndim - 1)) * (one[first + 1] - one[first])
-        for one in (poses.centre_m, poses.matrix)
-    )
-    return LinePoses(centre, matrix)
 
 
 def _start(board_m: Floats, rays: Floats, at: LinePoses, surface: Surface) -> tuple[Floats, Floats, float] | None:

@@ -62,7 +62,7 @@ class RectifiedDetector:
 
     def __call__(self, scan: Scan) -> Detection:
         """The target's points in a scan; none, with the reason, where it is not found or does not look as described."""
-        lines, poses = _within_log(scan, self.view)
+        lines, poses = lines_within_log(scan, self.view)
         scan = Scan(scan.intensity[lines], scan.time_us[lines], scan.name)
         best = self._searched(scan, poses)
         if best is None:
@@ -179,7 +179,7 @@ def _nothing(doubt: str, remedy: str = "") -> Detection:
     return Detection(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), doubt, board_found=False, remedy=remedy)
 
 
-def _within_log(scan: Scan, view: HandView) -> tuple[slice, LinePoses]:
+def lines_within_log(scan: Scan, view: HandView) -> tuple[slice, LinePoses]:
     """The scan's lines that the navigation log covers, and the camera's poses at them."""
     first, end = np.searchsorted(scan.time_us, [view.log.time_us[0], view.log.time_us[-1] + 1]).tolist()
     if end - first < 2:

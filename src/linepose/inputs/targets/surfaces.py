@@ -50,6 +50,12 @@ def candidate_surfaces(poses: LinePoses, distance_m: Floats) -> Iterator[tuple[t
             yield (kind, number), plane(centre + one * axis, away, right)
 
 
+def ground_at(poses: LinePoses, distance_m: float) -> Surface:
+    """Level ground at this distance along the mean optical axis; the plane that faces a camera which looks level."""
+    planes = {kind: one for (kind, _), one in candidate_surfaces(poses, np.array([distance_m]))}
+    return planes.get(1, planes[0])
+
+
 def plane(origin_m: Floats, away: Floats, right: Floats) -> Surface:
     """The plane through a point that is seen along `away`, with its first axis as near to `right` as it can be."""
     along = right - (right @ away) * away

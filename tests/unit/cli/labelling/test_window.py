@@ -17,10 +17,10 @@ from PIL import Image
 
 from linepose.cli.labelling import label, label_platform
 from linepose.cli.labelling.run import session_of
+from linepose.cli.labelling.scan_view import as_recorded
 from linepose.cli.labelling.session import save
 from linepose.cli.labelling.window import LabelWindow
 from linepose.errors import InputError
-from linepose.inputs.scans.scan_files import read_intensity
 from linepose.inputs.source import ScansSection
 from linepose.inputs.targets.refine import METHODS
 from linepose.survey.pattern import N_POINTS
@@ -57,7 +57,7 @@ class Mouse:
             self.figure,
             session,
             self.scans,
-            read_intensity,
+            as_recorded,
             METHODS["centroid"],
             lambda one: save(one, self.path),
             self.target,
