@@ -168,7 +168,7 @@ class LabelWindow:
             cmap="gray",
             vmin=low,
             vmax=max(high, low + 1e-6),
-            aspect="auto",
+            aspect="equal" if self._view.is_map else "auto",
             interpolation="nearest",
         )
         self.axes.set_xlabel(self._view.axes[0])
