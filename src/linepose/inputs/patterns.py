@@ -51,8 +51,7 @@ def matching(folder: Path, pattern: str) -> list[Path]:
     for path in found:
         if path.exists() and not path.is_file() and not path.is_dir():
             raise InputError(str(path), "a device or pipe", "a file", "put the file itself there")
-        if path.exists() and not os.access(path, os.R_OK):
-            raise InputError(str(path), "a file that may not be read", "a file", "get the right to read it")
+        check_readable(path)
     if is_name:
         return found
     for path in found:
@@ -60,6 +59,12 @@ def matching(folder: Path, pattern: str) -> list[Path]:
             expected = "a name without braces, in which the workflow would look for its own words"
             raise InputError(str(path), "braces in a file's name", expected, "rename the file")
     return found
+
+
+def check_readable(path: Path) -> None:
+    """Raise InputError for a file that is there and may not be read."""
+    if path.exists() and not os.access(path, os.R_OK):
+        raise InputError(str(path), "a file that may not be read", "one that may", "get the right to read it")
 
 
 def is_of(name: str, pattern: str) -> bool:

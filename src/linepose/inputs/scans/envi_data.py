@@ -15,6 +15,7 @@ from spectral.io.bsqfile import BsqFile
 from spectral.io.spyfile import SpyFile
 
 from linepose.errors import InputError
+from linepose.inputs.patterns import check_readable
 from linepose.inputs.scans.envi_header import read_envi_header
 from linepose.inputs.scans.header_layout import EnviHeader
 from linepose.inputs.scans.image_size import check_image_size, check_width
@@ -99,6 +100,7 @@ def open_envi(path: Path) -> EnviFile:
     layout = read_envi_header(path)
     check_image_size(layout.lines, layout.samples, path)
     file = EnviFile(layout, _data_path(path, layout.data_file))
+    check_readable(file.path)
     size = file.path.stat().st_size
     line_bytes = layout.samples * layout.bands * file.dtype.itemsize
     if layout.lines == 0:

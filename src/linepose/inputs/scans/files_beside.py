@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from linepose.errors import InputError
-from linepose.inputs.patterns import in_any_case
+from linepose.inputs.patterns import check_readable, in_any_case
 
 
 def first_file(names: Sequence[str], scan: Path) -> Path:
     """The first of these files that stands beside a scan, in any case; raises InputError where none does."""
     for path in (in_any_case(scan.parent / name) for name in names):
         if path.is_file():
+            check_readable(path)
             return path
     found = f"no {' or '.join(dict.fromkeys(names))} beside it"
     raise InputError(

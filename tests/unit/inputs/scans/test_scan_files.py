@@ -9,6 +9,7 @@ from PIL import Image
 from linepose.errors import InputError
 from linepose.inputs.scans import envi_data
 from linepose.inputs.scans.envi_data import spectral_mean
+from linepose.inputs.scans.files_beside import first_file
 from linepose.inputs.scans.scan_files import Scan, read_scan
 
 START_US = 1_466_000_000_000_000
@@ -227,3 +228,18 @@ def test_unknown_kind_of_file(tmp_path, name):
 def test_missing_scan(tmp_path):
     with pytest.raises(InputError, match="no such file"):
         read_scan(tmp_path / "scan.hdr")
+
+
+def test_data_that_may_not_be_read_are_told(tmp_path, cube, monkeypatch):
+    path = write_envi(tmp_path, cube)
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    with pytest.raises(InputError, match=r"scan.img: found a file that may not be read, .*; get the right to read it"):
+        spectral_mean(path)
+
+
+def test_a_file_beside_a_scan_that_may_not_be_read_is_told(tmp_path, monkeypatch):
+    (tmp_path / "scan.lcf").touch()
+    assert first_file(["scan.lcf"], tmp_path / "scan.hdr") == tmp_path / "scan.lcf"
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    with pytest.raises(InputError, match=r"scan.lcf: found a file that may not be read"):
+        first_file(["scan.lcf"], tmp_path / "scan.hdr")
