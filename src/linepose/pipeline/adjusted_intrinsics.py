@@ -76,7 +76,9 @@ class AdjustedIntrinsics:
         """How far what all else says of each (I,) lies from its prior, in sigmas of both together; see `is_tested`.
 
         The estimate is the mean of the two by their information: it lies off its prior by the gain times their
-        difference, whose variance is the prior's divided by the gain. NaN where the sigmas are not known.
+        difference, whose variance is the prior's divided by the gain. NaN where the sigmas are not known. Where
+        conjugate gradients solve for many points, up to a fifth is lost of priors a thousand times tighter than the
+        survey.
         """
         return (self.estimate - self.prior) / (self.prior_sigma * np.sqrt(self._gain))
 

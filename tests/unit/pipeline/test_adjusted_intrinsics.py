@@ -1,9 +1,14 @@
 """How far the intrinsics of an adjustment lie from the platform's file, in sigmas of survey and file together."""
 
+import importlib
+
 import numpy as np
 import pytest
 
+from linepose.adjustment import AdjustmentSettings, adjust
 from linepose.pipeline.adjusted_intrinsics import AdjustedIntrinsics, farthest
+from linepose.pipeline.adjusted_tables import adjusted_intrinsics
+from unit.adjustment import timed_survey
 
 NAMES = ("principal_point_px", "focal_length_m")
 PRIOR = np.array([320.0, 8e-3])
@@ -32,6 +37,22 @@ def test_a_data_sheet_that_is_too_sure_of_itself_is_contradicted(stated_m):
     one = found([2.0, stated_m], [1.0, survey_m], [0.0, off_m])
     assert one.is_tested.all()
     assert farthest(one) == ("focal_length_m", pytest.approx(off_m / np.hypot(stated_m, survey_m), rel=1e-3))
+
+
+@pytest.mark.parametrize("most_points", [150, 11])  # of normal equations that are formed as a matrix
+def test_an_adjustment_is_contradicted_alike_by_ever_smaller_sigmas(monkeypatch, most_points):
+    monkeypatch.setattr(importlib.import_module("linepose.adjustment.adjust"), "MANY_POINTS", most_points)
+    survey, camera = timed_survey.make_survey(10, 12, seed=41), timed_survey.CAMERA
+    settings = AdjustmentSettings(line_period_s=timed_survey.LINE_S, n_draws=10, n_samples=10, tails=False)
+    moved = []
+    for stated_m in (1e-6, 1e-7):
+        sigmas = camera.sigmas.replaced(focal_length_m=stated_m)
+        given = camera.replaced(focal_length_m=1.05 * camera.focal_length_m, sigmas=sigmas)
+        one = adjusted_intrinsics(adjust(survey, given, timed_survey.POSE, settings=settings), given)
+        assert one.is_tested[1]
+        moved.append(one.moved_sigmas[1])
+    assert moved[0] < -4
+    assert moved[1] == pytest.approx(moved[0], rel=0.01)  # the search ends within 1e-3 of a sigma
 
 
 def test_what_the_survey_says_next_to_nothing_of_is_not_tested():
