@@ -21,7 +21,8 @@ TO_REACH_S = 300
 def field_study() -> tuple[list[str], list[str]]:
     """The platforms of the project's study that are not simulated, and its data folders."""
     study = check_study(read_yaml(ROOT / "config" / "config.yaml"))
-    names = [name for name in study.platforms if not load_platform(ROOT / "config/platforms", name).simulation]
+    folder = ROOT / "config" / "platforms"
+    names = [name for name in study.platforms if load_platform(folder, name).true_pose is None]
     return names, [str((ROOT / folder).resolve()) for folder in study.data_folders]
 
 
