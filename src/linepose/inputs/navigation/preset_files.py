@@ -67,7 +67,7 @@ def _lines(path: Path, section: "TableSection") -> list[str]:
     """The first lines; none of a file that is no text, which is told where it is read."""
     try:
         return first_lines(path, section.encoding)
-    except (UnicodeError, OSError, InputError):
+    except (UnicodeError, OSError):
         return []
 
 
