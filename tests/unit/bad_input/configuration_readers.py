@@ -70,8 +70,9 @@ def _study_files() -> dict[str, bytes]:
     whole = (CONFIG_FOLDER / "config.yaml").read_bytes()
     study = whole.partition(b"datasets:")[0] + b"coverage:" + whole.partition(b"\n\ncoverage:")[2]
     lines = [line for line in study.splitlines(keepends=True) if not line.startswith(b"  - ladybird")]
-    platform = (CONFIG_FOLDER / "platforms" / "shrimp-sim.yaml").read_bytes()
-    return {"config.yaml": b"".join(lines) + b"platforms_folder: .\n", "shrimp-sim.yaml": platform}
+    names = [f"{name}.yaml" for name in ("shrimp-sim", "drone-sim")]
+    platforms = {name: (CONFIG_FOLDER / "platforms" / name).read_bytes() for name in names}
+    return {"config.yaml": b"".join(lines) + b"platforms_folder: .\n"} | platforms
 
 
 def _stays_below(dataset: Any) -> bool:
