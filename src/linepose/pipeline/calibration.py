@@ -52,7 +52,9 @@ _TRUE_POINT_COLUMNS: Final = [f"point_{name}" for name in POSITION_COLUMNS]
 class Calibration:
     """The camera's pose on the vehicle and how sure it is; what `calibrate` returns and a results folder holds.
 
-    All else is read from the tables when it is first asked for; one that cannot be used then raises InputError.
+    `pose` (6,) is the camera in the body frame (m) and its rotation vector (rad), `covariance` (6, 6) its covariance,
+    `matrix` (4, 4) takes points of the camera to the body. All is read from the tables when it is first asked for; one
+    that cannot be used then raises InputError.
 
     Parameters
     ----------
@@ -72,15 +74,6 @@ class Calibration:
         The platform's file, where there is one.
     data_folder : Path, optional
         What the platform recorded.
-
-    Attributes
-    ----------
-    pose : ndarray of shape (6,)
-        Camera in the body frame: forward, right, down (m), rotation vector camera to body (rad).
-    covariance : ndarray of shape (6, 6)
-        Of the pose, m and rad.
-    matrix : ndarray of shape (4, 4)
-        Takes points of the camera frame to the body frame (m).
 
     Examples
     --------

@@ -35,6 +35,8 @@ _SAME_SIGMAS: Final = 0.1  # by which the calibration may differ from what its o
 class Recheck:
     """What new views say of a calibration; what `recheck_platform` returns.
 
+    `holds` says whether the views agree with the calibration, `sees` whether they could have seen any move at all.
+
     Parameters
     ----------
     name : str
@@ -47,13 +49,6 @@ class Recheck:
         How often a camera that has not moved is told to have.
     warnings : tuple of str
         Why the numbers may not be trusted, one line each.
-
-    Attributes
-    ----------
-    holds : bool
-        Whether the views agree with the calibration.
-    sees : bool
-        Whether they could have seen any move at all.
 
     Examples
     --------
