@@ -27,6 +27,8 @@ GEODETIC: Final = "EPSG:4979"  # WGS 84: latitude, longitude (deg), ellipsoidal 
 
 _TOLD_SCALE_ERROR: Final = 1e-3  # of a system's lengths: that of UTM at the edge of a zone
 _LARGEST_SCALE_ERROR: Final = 1e-2  # as large as the best lever arms are known: 1 cm of 1 m
+_FARTHEST_M: Final = 1e5  # of local coordinates from their origin: eastings of UTM are larger
+_HIGHEST_M: Final = 2e4
 _MARGIN_DEG: Final = 3.0  # around the area that a projected system is made for
 
 log = logging.getLogger(__name__)
@@ -141,6 +143,28 @@ def geodetic_from_local(frame: LocalFrame, position_m: ArrayLike) -> Floats:
     east, north, up = enu.T
     longitude, latitude, height = _topocentric(frame.origin).transform(east, north, up, direction="INVERSE")
     return np.stack([latitude, longitude, height], axis=-1)
+
+
+def check_local(position_m: ArrayLike, key: str, projected_key: str) -> None:
+    """Raise InputError where all positions north, east, down (m) (K, 3) are too far from their origin to be local.
+
+    `key` is what gave the origin, `projected_key` what stands in its place for coordinates of a projected system.
+    """
+    position = np.asarray(position_m, dtype=float)
+    known = position[np.isfinite(position).all(axis=-1)]
+    if not len(known):
+        return
+    level, height = np.hypot(known[:, 0], known[:, 1]), np.abs(known[:, 2])
+    if level.min() <= _FARTHEST_M and height.min() <= _HIGHEST_M:
+        return
+    north, east, down = known[int(np.argmin(level + height))] / 1e3
+    raise InputError(
+        key,
+        f"positions {north:.0f} km north, {east:.0f} km east and {-down:.0f} km above it",
+        f"local coordinates, within {_FARTHEST_M / 1e3:.0f} km of their origin and {_HIGHEST_M / 1e3:.0f} km in height",
+        f"write {projected_key}: EPSG:... in its place where they are northings and eastings of a projected system, "
+        "or correct the origin",
+    )
 
 
 def check_geodetic(geodetic: Floats, place: str) -> None:

@@ -14,7 +14,7 @@ from pydantic import Field, PositiveFloat, model_validator
 from linepose.arrays import Floats
 from linepose.errors import InputError
 from linepose.inputs import axes
-from linepose.inputs.local_frame import projected_frame, tangent_frame
+from linepose.inputs.local_frame import check_local, projected_frame, tangent_frame
 from linepose.inputs.navigation import presets
 from linepose.inputs.navigation.attitude_log import AttitudeSection, with_attitudes
 from linepose.inputs.navigation.format import GeodeticSection, NavigationFormat
@@ -142,6 +142,8 @@ def read(section: TableSection, folder: Path) -> NavigationRecord:
     if section.origin is not None:
         frame = tangent_frame(section.origin)
     record = local_record(poses, covariances, section)
+    if section.origin is not None:
+        check_local(record.log.position_m, "source.navigation.origin", "source.navigation.crs")
     return record if frame is None else replace(record, crs=frame.crs, origin=frame.origin)
 
 

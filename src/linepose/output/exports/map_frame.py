@@ -1,6 +1,6 @@
 """Where north, east and down are on the Earth: easting, northing and height on a map, and WGS84 beside them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
-from linepose.inputs.local_frame import GEODETIC, geodetic_from_local, tangent_frame, utm_crs
+from linepose.inputs.local_frame import GEODETIC, check_local, geodetic_from_local, tangent_frame, utm_crs
 
 if TYPE_CHECKING:
     from pyproj import CRS, Transformer
@@ -26,10 +26,12 @@ class MapFrame:
 
     `name` is the map's projected reference system. With an `origin` (latitude, longitude in deg, ellipsoidal height in
     m, WGS84) the survey lies in the plane that touches the Earth there; without one north and east are the map's own.
+    `key` is what gave the origin, where it was told apart from the positions and may not be theirs.
     """
 
     name: str
     origin: Origin | None = None
+    key: str | None = field(default=None, compare=False)
 
     @cached_property
     def crs(self) -> "CRS":
@@ -39,12 +41,21 @@ class MapFrame:
         return CRS.from_user_input(self.name)
 
     def places(self, north_east_down: ArrayLike) -> Floats:
-        """Easting, northing, height (m) of places north, east, down (m); (K, 3) to (K, 3)."""
+        """Easting, northing, height (m) of places north, east, down (m); (K, 3) to (K, 3).
+
+        Raises InputError where they are too far from the origin.
+        """
+        self.check(north_east_down)
         east_north_up = np.asarray(north_east_down, dtype=float) @ _TO_EAST_NORTH_UP.T
         if self.origin is None:
             return east_north_up
         latitude, longitude, height = geodetic_from_local(tangent_frame(self.origin), north_east_down).T
         return np.stack(self._to_geodetic.transform(longitude, latitude, height, direction="INVERSE"), axis=-1)
+
+    def check(self, north_east_down: ArrayLike) -> None:
+        """Raise InputError where places north, east, down (K, 3) are too far from an origin that was told apart."""
+        if self.key is not None:
+            check_local(north_east_down, self.key, "map_frame.crs")
 
     def covariances(self, north_east_down: ArrayLike, covariance: ArrayLike) -> Floats:
         """Covariance in easting, northing, height of one (K, 3, 3) in north, east, down, at places (K, 3)."""

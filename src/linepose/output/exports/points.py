@@ -1,5 +1,6 @@
 """The mapped points of a finished calibration in easting, northing and height, with their covariances."""
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -31,7 +32,7 @@ def frame_of(calibration: Calibration) -> MapFrame:
     if section is not None and section.crs is not None:
         return projected_map(section.crs, f"{place}.crs")
     if section is not None and section.origin is not None:
-        return tangent_map(section.origin, f"{place}.origin")
+        return replace(tangent_map(section.origin, f"{place}.origin"), key=f"{place}.origin")
     of_log = results.path("map_frame")
     recorded = read_table(of_log, MAP_FRAME) if of_log.is_file() else None
     if recorded is not None and len(recorded):

@@ -71,6 +71,23 @@ def test_east_north_up_of_ros(tmp_path):
     assert record.origin == ORIGIN  # said by the platform file, so that exports can give back latitude and longitude
 
 
+@pytest.mark.parametrize(
+    ("places", "is_local"),
+    [
+        ({"north_m": 99_000.0, "east_m": 10_000.0, "down_m": -19_000.0}, True),
+        ({"north_m": 6_248_551.0, "east_m": 332_962.0}, False),
+        ({"north_m": 0.0, "east_m": 101_000.0}, False),
+        ({"down_m": -21_000.0}, False),
+    ],
+)
+def test_an_origin_is_not_that_of_coordinates_far_from_it(tmp_path, places, is_local):
+    if is_local:
+        assert read(tmp_path, table(**places), origin=ORIGIN).origin == ORIGIN
+        return
+    with pytest.raises(InputError, match=r"source.navigation.origin: .*write source.navigation.crs: EPSG"):
+        read(tmp_path, table(**places), origin=ORIGIN)
+
+
 def test_map_coordinates_lead_back_to_latitude_and_longitude(tmp_path):
     values = table(north_m=6_248_551.0, east_m=332_962.0, down_m=-42.0)
     record = read(tmp_path, values, crs="EPSG:32756")

@@ -14,7 +14,7 @@ from linepose.output.map.frame import SurveyMap
 from linepose.pipeline.calibration import Calibration
 from unit.output.exports.on_earth import PLACE, earth_fixed, on_earth
 from unit.output.map.adjusted_platform import adjusted_calibration, adjusted_scans
-from unit.output.map.made_up_scan import CAMERA
+from unit.output.map.made_up_scan import CAMERA, ORIGIN
 
 MILLIMETRE = 1e-3
 FLYING_M = 40.0
@@ -157,3 +157,13 @@ def test_it_refuses_what_apl_cannot_have(tmp_path):
         without.export("apl", tmp_path / "x.zip")
     with pytest.raises(InputError, match="lengths on a projected map are not those on the ground"):
         path_of(replace(on_earth(), frame=SurveyMap(MapFrame("EPSG:32756"))))
+    with pytest.raises(InputError, match=r"found coordinates of their own.*write map_frame: \{origin"):
+        path_of(replace(on_earth(), frame=SurveyMap(None)))
+
+
+def test_a_log_in_northings_is_not_taken_as_local_to_an_origin():
+    strip = replace(on_earth(), frame=SurveyMap(replace(PLACE, key="robot.yaml: map_frame.origin")))
+    assert path_of(strip).tolist() == path_of(on_earth()).tolist()
+    log = replace(strip.navigation.log, position_m=strip.navigation.log.position_m + ORIGIN)
+    with pytest.raises(InputError, match=r"robot.yaml: map_frame.origin: found positions 6248 km north, 333 km east"):
+        path_of(replace(strip, navigation=replace(strip.navigation, log=log)))

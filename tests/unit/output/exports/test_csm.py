@@ -108,6 +108,8 @@ def test_what_usgscsm_asks_for_is_there_in_its_types():
 def test_a_projected_map_and_poses_that_jump_are_refused():
     with pytest.raises(InputError, match="lengths on a projected map are not those on the ground"):
         csm_state(replace(on_earth(), frame=SurveyMap(MapFrame("EPSG:32756"))), "robot")
+    with pytest.raises(InputError, match=r"found coordinates of their own.*write map_frame: \{origin"):
+        csm_state(replace(on_earth(), frame=SurveyMap(None)), "robot")
     strip = on_earth()
     jumping = replace(strip, navigation=replace(strip.navigation, pose_at=nearest_pose))
     late = np.random.default_rng(1).integers(-30_000, 30_001, len(strip.time_us))

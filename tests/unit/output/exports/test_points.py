@@ -8,6 +8,7 @@ import pyogrio
 import pytest
 from pyproj import Geod, Transformer
 
+from linepose.errors import InputError
 from linepose.output.exports.map_frame import tangent_map
 from linepose.output.exports.points import MAP_COLUMNS
 from linepose.tables import write_table
@@ -115,3 +116,12 @@ def test_points_of_a_local_survey_land_on_their_place(made, tmp_path):
     np.testing.assert_allclose(coordinates(read), expected, atol=0.36 * np.radians(1.1))
     turned = (coordinates(read) - expected)[:, :2]
     assert np.linalg.norm(turned, axis=1) == pytest.approx(0.36 * np.radians(1.0), rel=0.03)
+
+
+def test_northings_are_not_taken_as_metres_from_an_origin(made, tmp_path):
+    made.platform = made_up.platform(map_frame={"origin": (-33.8902, 151.1937, 40.0)})
+    for format in ("geopackage", "geojson"):
+        with pytest.raises(
+            InputError, match=r"map_frame.origin: found positions .* km north.*write map_frame.crs: EPSG"
+        ):
+            made.export(format, tmp_path / "points")

@@ -15,10 +15,15 @@ HEIGHT_M = 0.05
 
 
 def adjusted_scans(folder: Path, n_observations: int = 1, **changes) -> tuple[Platform, Path]:
-    """The platform's file, and the folder of what it recorded: the first passes of the simulated Ladybird."""
+    """The platform's file, and the folder of what it recorded: the first passes of the simulated Ladybird.
+
+    With a `map_frame` they are about an origin, otherwise northings and eastings.
+    """
     given = load_platform(CONFIG / "platforms", "ladybird-sim").model_dump(mode="json")
     ground = {"ground": "height", "height_m": HEIGHT_M}
     values = given | {"noise_model": "adjustment", "prior": "hand_measured", "map": ground} | changes
+    if "map_frame" in changes:
+        values["simulation"] = values["simulation"] | {"origin_m": (0.0, 0.0, 0.0)}
     platform, data = Platform.model_validate(values), folder / "data"
     write_scan_files(data, platform, n_observations)
     return platform, data
