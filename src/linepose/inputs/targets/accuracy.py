@@ -18,15 +18,16 @@ def accuracy(found: ArrayLike, truth: ArrayLike, v_px_per_line: ArrayLike) -> di
     """Bias and standard deviation of positions (K, 2) of u and line, and how many are missing.
 
     Along the scan line they are in u (px). Across it a line is `v_px_per_line` (K,) pixels, by which the point moves
-    from one line to the next; in a reverse pass that is negative. A point that was not found is NaN; two must be found.
+    from one line to the next; in a reverse pass that is negative. A point that was not found is NaN, as are bias
+    and deviation of fewer than two.
     """
     error = np.asarray(found, dtype=float) - np.asarray(truth, dtype=float)
     error = error * np.stack([np.ones(len(error)), np.asarray(v_px_per_line, dtype=float)], axis=-1)
     seen = error[np.isfinite(error).all(axis=1)]
     measures: dict[str, float] = {"n_points": len(error), "n_missing": len(error) - len(seen)}
     for axis, name in enumerate(_AXES):
-        measures[f"bias_{name}"] = float(seen[:, axis].mean())
-        measures[f"sigma_{name}"] = float(seen[:, axis].std(ddof=1))
+        measures[f"bias_{name}"] = float(seen[:, axis].mean()) if len(seen) > 1 else np.nan
+        measures[f"sigma_{name}"] = float(seen[:, axis].std(ddof=1)) if len(seen) > 1 else np.nan
     return measures
 
 

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from linepose.arrays import Floats
 from linepose.inputs.observed_points import detected_in, scan_points
-from linepose.inputs.targets.accuracy import compare_methods
-from linepose.inputs.targets.detect import Detection, ring_detector
-from linepose.inputs.targets.refine import METHODS
-from linepose.survey.targets.rings import RingsSection
-from linepose.tables import flags, floats, texts, whole_numbers
+from linepose.inputs.targets.accuracy import accuracy, compare_methods
+from linepose.inputs.targets.detect import Detection, Detector
+from linepose.inputs.targets.refine import METHODS, REFINEMENTS, Refine
+from linepose.survey.targets.base import TargetSection
+from linepose.tables import flags, floats, optional_floats, texts, whole_numbers
 
 _SCAN: Final = [*whole_numbers("observation", "n_lines"), *floats("range_m", "v_px_per_line")]
 EXTRACTION_ACCURACY: Final = pa.schema(
@@ -25,11 +25,25 @@ EXTRACTION_ACCURACY: Final = pa.schema(
         *texts("method"),
         *flags("chosen"),
         *whole_numbers("n_points", "n_missing"),
-        *floats("bias_u_px", "sigma_u_px", "bias_v_px", "sigma_v_px"),
+        *optional_floats("bias_u_px", "sigma_u_px", "bias_v_px", "sigma_v_px"),  # none of fewer than two points
     ]
 )
 DETECTION: Final = pa.schema([*_SCAN, *whole_numbers("n_visible", "n_found", "n_wrong"), *texts("doubt")])
+DETECTED: Final = "detected"
 _PLACE = ["u_px", "line"]
+
+
+@dataclass(frozen=True)
+class DetectedBoard:
+    """The board in simulated scans, what finds it without labels, and the chosen method of `REFINEMENTS`."""
+
+    target: TargetSection
+    detector: Detector
+    refinement: str
+
+    def methods(self) -> dict[str, Refine]:
+        """What refines its points from labels: every method of dots and the chosen one; none for corners."""
+        return {} if self.target.feature != "dot" else METHODS | {self.refinement: REFINEMENTS[self.refinement]}
 
 
 @dataclass(frozen=True)
@@ -45,31 +59,41 @@ class MeasuredExtraction:
 
 
 def measure_extraction(
-    scans: Mapping[int, Path], labels: pd.DataFrame, truth: pd.DataFrame, chosen: str, n_pixels: int
+    scans: Mapping[int, Path],
+    labels: pd.DataFrame,
+    truth: pd.DataFrame,
+    board: DetectedBoard,
+    n_pixels: int,
 ) -> MeasuredExtraction:
-    """Refine all labels by every method, find all points without labels by the chosen one, compare with the truth.
+    """Find all points of the board without labels, refine dots from labels by every method, compare with the truth.
 
-    A label counts for the true point that it is nearest to, whatever id it carries.
+    A label counts for the true point that it is nearest to, whatever id it carries. Corners have no such method: their
+    one row is of the points that are found (`DETECTED`).
     """
     accuracies, detections, points = [], [], []
-    for number, _, scan, found in detected_in(scans, ring_detector(RingsSection(), METHODS[chosen]), n_pixels):
+    ids, methods = np.array(board.target.ids()), board.methods()
+    for number, _, scan, found in detected_in(scans, board.detector, n_pixels):
         visible = truth[(truth["observation"] == number) & truth["visible"]]
-        exact = visible[_PLACE].to_numpy()
-        rough = labels.loc[labels["observation"] == number, _PLACE].to_numpy()
-        meant = nearest(rough, exact)
-        rate = visible["v_px_per_line"].to_numpy()
+        exact, rate = visible[_PLACE].to_numpy(), visible["v_px_per_line"].to_numpy()
         view = {
             "observation": number,
             "range_m": visible["range_m"].mean(),
             "v_px_per_line": rate.mean(),
             "n_lines": len(scan.intensity),
         }
-        accuracies.append(compare_methods(METHODS, scan.intensity, rough, exact[meant], rate[meant]).assign(**view))
-        detections.append(view | _detection_counts(found, visible["point"].to_numpy(), exact))
+        if methods:
+            rough = labels.loc[labels["observation"] == number, _PLACE].to_numpy()
+            meant = nearest(rough, exact)
+            measured = compare_methods(methods, scan.intensity, rough, exact[meant], rate[meant])
+        else:
+            meant = nearest(found.position, exact)
+            measured = pd.DataFrame([{"method": DETECTED} | accuracy(found.position, exact[meant], rate[meant])])
+        accuracies.append(measured.assign(**view))
+        detections.append(view | _detection_counts(found, ids[visible["point"].to_numpy()], exact))
         points.append(scan_points(number, scan, found.point, found.position))
-    accuracy = pd.concat(accuracies, ignore_index=True)
+    accuracy_of_all = pd.concat(accuracies, ignore_index=True)
     return MeasuredExtraction(
-        accuracy.assign(chosen=accuracy["method"] == chosen),
+        accuracy_of_all.assign(chosen=accuracy_of_all["method"] == (board.refinement if methods else DETECTED)),
         pd.DataFrame(detections),
         pd.concat(points, ignore_index=True),
     )
