@@ -20,7 +20,7 @@ from linepose.check.flight import flight_findings
 from linepose.check.hand_measured import hand_findings
 from linepose.check.labels import count_findings, position_findings
 from linepose.check.motion import motion_findings
-from linepose.check.points import point_findings
+from linepose.check.points import file_findings, point_findings
 from linepose.check.prediction import predict
 from linepose.check.recorder import Recorder
 from linepose.check.scans import scan_findings
@@ -157,6 +157,8 @@ def recorded_findings(
         findings += count_findings(points, project.study.outliers.minimum_observations if removes else None)
     more, recorded = _navigation_findings(settings, folder, points)
     findings += more
+    if points is None:
+        findings += file_findings(settings, folder, recorded.log)
     if any(finding.level == Level.ERROR for finding in findings) or recorded.points is None:
         return findings, points, None
     try:

@@ -200,6 +200,11 @@ class Platform(Settings):
         if self.points is not None and noise_model(self.noise_model).removes_outliers:
             found = f"points with noise_model {self.noise_model}, which has no use for them"
             raise SettingsError(found, "noise_model adjustment", "leave points out, or change noise_model")
+        matched = isinstance(self.source, ScansSection) and self.source.points == "matching"
+        if matched and self.points is not None and self.points.control_points is not None:
+            found = "points.control_points with source.points matching: tie points have no names to be known by"
+            remedy = "leave points.control_points out (points.ground may stay), or label the points"
+            raise SettingsError(found, "source.points labels or detection", remedy)
         return self
 
     @model_validator(mode="after")

@@ -20,6 +20,7 @@ from linepose.geometry import camera as cameras
 from linepose.geometry import rotations
 from linepose.inputs.control_points import read_control_points
 from linepose.inputs.local_frame import LocalFrame
+from linepose.inputs.source import ScansSection
 from linepose.inputs.terrain import read_terrain
 from linepose.pipeline.survey_frame import map_frame_table, survey_frame
 from linepose.survey.observations import Survey, survey_from_table
@@ -36,6 +37,14 @@ _ROUNDS: Final = 5
 log = logging.getLogger(__name__)
 
 
+def names_remedy(platform: Platform) -> str:
+    """What to do with control points of other names than the points of the scans have."""
+    source = platform.source
+    if isinstance(source, ScansSection) and source.points == "detection":
+        return f"give them the numbers of the {platform.target.kind}'s points"
+    return "give them the names of the labels"
+
+
 def names_of_points(survey: Survey) -> list[str]:
     """The names of a survey's points (M,)."""
     return [str(name) for name in survey.names]
@@ -45,10 +54,18 @@ def known_of_platform(platform: Platform, folder: Path, observations: pd.DataFra
     """The same from a table of observations and what the platform's file or its log says of its place on the Earth."""
     if not platform.knows_points:
         return {}
+    return known_points(platform, folder, survey_from_table(observations), frame_of_points(platform, folder))
+
+
+def frame_of_points(platform: Platform, folder: Path) -> LocalFrame | None:
+    """Where the survey lies on the Earth, by the platform's file or its log; None where `points` does not ask for it.
+
+    Raises InputError.
+    """
+    if platform.points is None or not platform.points.is_on_the_earth:
+        return None
     section = None if platform.map_frame is None else platform.map_frame.model_dump()
-    needs_frame = platform.points is not None and platform.points.is_on_the_earth
-    frame = survey_frame(section, map_frame_table(platform, folder)) if needs_frame else None
-    return known_points(platform, folder, survey_from_table(observations), frame)
+    return survey_frame(section, map_frame_table(platform, folder) if section is None else pd.DataFrame())
 
 
 def known_points(
@@ -90,7 +107,7 @@ def _placed(platform: Platform, folder: Path, survey: Survey, frame: LocalFrame 
         known = {name: one for name, one in control.items() if name in seen}
         if not known:
             found, expected = f"points {', '.join(list(control)[:3])}, ...", "points that the scans show"
-            raise InputError(str(path), found, expected, "give them the names of the labels")
+            raise InputError(str(path), found, expected, names_remedy(platform))
         unseen = [name for name in control if name not in seen]
         if unseen:
             log.warning("%s: %d of %d points are in no scan: %s", path, len(unseen), len(control), unseen[:5])

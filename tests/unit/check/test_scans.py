@@ -141,6 +141,11 @@ def test_points_to_be_detected_are_left_to_the_run(scans):
     assert report.level == Level.OK
     assert report.predicted == ()
     assert any("without labels" in finding.found for finding in report.findings)
+    path = scans / "config" / "platforms" / "mine.yaml"
+    known = {"points": {"control_points": "control.csv"}}
+    path.write_text(yaml.safe_dump(yaml.safe_load(path.read_text()) | known))
+    (fault,) = check_platform("mine", scans).of(Level.ERROR)
+    assert "control.csv: no such file" in fault.found
 
 
 def test_what_readers_pass_over_is_told_once(scans):

@@ -228,6 +228,17 @@ def test_a_target_that_cannot_be_known_is_refused(flight, change, told):
         Platform(**platform(flight).model_dump() | change)
 
 
+def test_tie_points_cannot_be_control_points(flight):
+    source = {"kind": "scans", "dataset": "x", "points": "matching", "matching": {"ground_height_m": 0.0}}
+    ground = {"height_m": 0.0, "sigma_m": 1.0}
+    matched = platform(flight, ground=ground).model_dump() | {"source": source}
+    assert Platform(**matched).points.ground.height_m == 0.0
+    with pytest.raises(
+        InputError, match=r"found points.control_points with source.points matching.*or label the points"
+    ):
+        Platform(**matched | {"points": {"control_points": "control.csv", "ground": ground}})
+
+
 def test_a_known_target_of_other_ids_is_told(flight, tmp_path):
     names = np.array([f"stone {k}" for k in range(12)], dtype=object)
     with pytest.raises(InputError, match=r"target.known.*0 of its 12 points in the scans.*3 or more"):
