@@ -9,7 +9,7 @@ with stage(snakemake) as log:
     from linepose.inputs.labels.labelled_views import POINTS
     from linepose.inputs.observed_points import SCAN_POINTS
     from linepose.inputs.source import LabelledViewsSection
-    from linepose.pipeline.load import read_points
+    from linepose.pipeline.load import measurements_in_words, read_points
     from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
@@ -17,4 +17,4 @@ with stage(snakemake) as log:
     points = read_points(platform, folder)
     schema = POINTS if isinstance(platform.source, LabelledViewsSection) else SCAN_POINTS
     write_table(points, snakemake.output[0], schema)
-    log.info("%d points in %d views of %s", len(points), points["observation"].nunique(), folder)
+    log.info("%s of %s", measurements_in_words(points), folder)

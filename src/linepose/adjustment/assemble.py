@@ -25,14 +25,16 @@ from linepose.adjustment.result import (
 )
 from linepose.adjustment.settings import AdjustmentSettings
 from linepose.adjustment.state import Knowledge, State
+from linepose.adjustment.thresholds import OPEN_SHARE
 from linepose.arrays import Floats
 from linepose.geometry import rotations
-from linepose.geometry.pose import POSE_COLUMNS
+from linepose.geometry.pose import POSE_COLUMNS, TURN_WORDS
 from linepose.survey.observations import Survey
 
 CLOCK_OFFSET_COLUMN: Final = "clock_offset_s"  # of the samples, where it is estimated
-_OPEN_SHARE: Final = 0.9  # of a prior's sigma, above which the data have said nothing
 _INTERVAL: Final = (0.025, 0.975)
+
+_DIRECTIONS: Final = (*POSE_COLUMNS[:3], *TURN_WORDS.values())  # of a small step of the pose
 
 
 def assembled(
@@ -162,7 +164,7 @@ def _diagnostics(
             for row in done.known.contradicting
         ),
         board=board,
-        clock_known=not clock_sigma_s > _OPEN_SHARE * (knowledge.clock_offset_sigma_s or np.inf),
+        clock_known=not clock_sigma_s > OPEN_SHARE * (knowledge.clock_offset_sigma_s or np.inf),
     )
     return Diagnostics(
         **vars(quality),
@@ -192,6 +194,6 @@ def _beside_hand(hand: HandMeasuredPrior, state: State, covariance: Floats) -> t
     turn = rotations.rotation_vector_from_matrix(hand_matrix @ state.rotation.T)
     error = np.concatenate([hand.pose[:3] - state.position_m, turn])
     prior, posterior = np.diag(hand.covariance), np.diag(covariance)
-    is_open = posterior > _OPEN_SHARE**2 * prior
+    is_open = posterior > OPEN_SHARE**2 * prior
     variance = np.where(is_open, prior, prior - posterior)
-    return error / np.sqrt(variance), tuple(name for name, one in zip(POSE_COLUMNS, is_open, strict=True) if one)
+    return error / np.sqrt(variance), tuple(name for name, one in zip(_DIRECTIONS, is_open, strict=True) if one)

@@ -8,12 +8,11 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from linepose.adjustment.board_fit import BoardFit
+from linepose.adjustment.draws_in_words import draws_in_words
 from linepose.adjustment.levels import Levels
 from linepose.adjustment.thresholds import (
     DISAGREEMENT_SIGMAS,
-    FEWEST_EFFECTIVE_DRAWS,
     TRUSTED_EIGENVALUE,
-    TRUSTED_SHAPE,
 )
 from linepose.arrays import Floats
 
@@ -154,11 +153,9 @@ def warnings_of(quality: Quality) -> tuple[str, ...]:
             f"chi squared curves {quality.least_eigenvalue:.2f} of what the normal equations say in one direction, "
             f"expected {TRUSTED_EIGENVALUE} or more: do not trust the sigmas; add observations"
         )
-    if quality.pareto_shape > TRUSTED_SHAPE or quality.effective_draws < FEWEST_EFFECTIVE_DRAWS:
-        said.append(
-            f"draws of the levels are worth {quality.effective_draws:.0f} (Pareto shape {quality.pareto_shape:.2f}), "
-            f"expected {FEWEST_EFFECTIVE_DRAWS:.0f} or more (below {TRUSTED_SHAPE}): raise n_draws"
-        )
+    draws = draws_in_words(quality.effective_draws, quality.pareto_shape)
+    if draws.advice:
+        said.append(f"draws of the levels are {draws.found}. {draws.advice.removesuffix('.')}")
     if np.any(np.abs(quality.disagreement_sigmas) > DISAGREEMENT_SIGMAS):
         said.append(
             f"data and hand measurement disagree by {np.nanmax(np.abs(quality.disagreement_sigmas)):.1f} sigmas: "

@@ -5,6 +5,7 @@ from typing import Final
 TRUSTED_EIGENVALUE: Final = 0.3  # the least one below which the covariance is not to be trusted
 TRUSTED_SHAPE: Final = 0.7  # of the Pareto tail, above which the weights cannot be trusted
 FEWEST_EFFECTIVE_DRAWS: Final = 20.0
+OPEN_SHARE: Final = 0.9  # of a prior's sigma, above which the data have said nothing
 DISAGREEMENT_SIGMAS: Final = 3.0  # of data and hand measurement
 MISFIT_SIGMAS: Final = 4.0  # of a board's known geometry, from which on it is not used
 CLOCK: Final = "clock"

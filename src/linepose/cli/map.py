@@ -10,6 +10,7 @@ from linepose.cli.options import HERE, Name, ProjectFolder
 
 if TYPE_CHECKING:
     from linepose.config.map import MapSection
+    from linepose.config.platform import Platform
 
 
 def map_scans(
@@ -45,7 +46,7 @@ def map_scans(
         raise InputError(str(folder), "no result", "that of a run", f"linepose run {name}")
     data, platform = root / loaded.folder(name), loaded.platforms[name]
     calibration = Calibration.from_results(folder, platform, loaded.study.outliers.threshold_px, stage, data)
-    section = _with_bands(platform.map or MapSection(), bands)
+    section = _with_bands(platform.map or MapSection(), bands, platform, data)
     maps = platform_map(calibration, section, data)
     target = output or folder / "map"
     n_before = 0
@@ -60,7 +61,7 @@ def map_scans(
     typer.echo(target)
 
 
-def _with_bands(section: "MapSection", bands: str | None) -> "MapSection":
+def _with_bands(section: "MapSection", bands: str | None, platform: "Platform", data: Path) -> "MapSection":
     """The section with these bands written as GeoTIFF; raises InputError for words that name none."""
     from pydantic import ValidationError
 
@@ -74,7 +75,21 @@ def _with_bands(section: "MapSection", bands: str | None) -> "MapSection":
     try:
         geotiff = GeotiffSection.model_validate({**known, "bands": wanted}, strict=False)
     except ValidationError:
-        raise InputError(
-            "--bands", repr(bands), "numbers from 1, each once, or all", "write --bands 30,60,90"
-        ) from None
+        n_bands = _n_bands(platform, data)
+        expected = f"numbers from 1 to {n_bands}, each once, or all"
+        some = sorted({1, (n_bands + 1) // 2, n_bands})
+        raise InputError("--bands", repr(bands), expected, f"write --bands {','.join(map(str, some))}") from None
     return section.model_copy(update={"geotiff": geotiff})
+
+
+def _n_bands(platform: "Platform", data: Path) -> int:
+    """Bands of the platform's first scan."""
+    from linepose.errors import InputError
+    from linepose.inputs.observed_points import select_scans
+    from linepose.inputs.scans.scan_bands import open_bands
+    from linepose.inputs.source import ScansSection
+
+    source = platform.source
+    if not isinstance(source, ScansSection):
+        raise InputError("--bands", "a platform of labelled views", "scans", "leave it out")
+    return int(open_bands(next(iter(select_scans(data, source.scans, source.left_out).values()))).shape[2])

@@ -13,6 +13,8 @@ from linepose.cli.options import HERE
 if TYPE_CHECKING:
     from linepose.survey.targets.base import TargetSection
 
+_OWN_PARQUET = "navigation.parquet"  # a log of our own, written into the platform's file where it is there
+
 
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the platform: letters, digits, - and _.")],
@@ -124,6 +126,8 @@ def new(
         navigation_format = given(None, "--navigation-format", ask, str, "table")
     if navigation_file is not None:
         navigation = navigation or _below(root / "data" / (dataset or name), navigation_file)
+    elif not navigation_format and (root / "data" / (dataset or name) / _OWN_PARQUET).is_file():
+        navigation = navigation or _OWN_PARQUET
     sigmas = {"sigma_position_m": sigma_position_m, "sigma_rotation_deg": sigma_rotation_deg}
     path = write_platform(
         platforms,
@@ -171,12 +175,19 @@ def _shown(target: str, source: str | None) -> "TargetSection":
 
 
 def _recognised(path: Path, chosen: str | None) -> tuple[str, dict[str, Any]]:
-    """Name of a log's format and its keys, by what the file holds; the format that is chosen, where one is."""
+    """Name of a log's format and its keys, by what the file holds; the format that is chosen, where one is.
+
+    The name is empty for our own table of poses, which needs no format.
+    """
     from linepose.errors import InputError
+    from linepose.inputs.navigation.log_file import is_own_log
     from linepose.inputs.navigation.registry import FORMATS, recognised
 
     if not path.exists():
         raise InputError(str(path), "no such file", "a navigation log", "correct --navigation-file")
+    if chosen is None and is_own_log(path):
+        typer.echo(f"{path}: linepose's own table of poses")
+        return "", {}
     name, keys = recognised(path, chosen)
     if name is None:
         remedy = "give --navigation-format and --navigation instead (docs/formats.md)"

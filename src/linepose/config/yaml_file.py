@@ -6,6 +6,7 @@ from typing import Any, Final
 
 import yaml
 
+from linepose.config.yaml_fault import yaml_fault
 from linepose.errors import InputError
 
 _MOST_BYTES: Final = 1_000_000
@@ -42,7 +43,7 @@ def parsed_yaml(text: bytes | str, place: str) -> Any:
         _check_node(root, place, 0, [0])
         return loader.construct_document(root)
     except yaml.YAMLError as error:
-        raise InputError(place, " ".join(str(error).split()), "YAML", "correct the file") from None
+        raise yaml_fault(error, place) from None
     except RecursionError:
         raise InputError(place, "lists in lists without end", "YAML", "correct the file") from None
     except (ValueError, OverflowError, TypeError, AttributeError) as error:

@@ -18,6 +18,10 @@ from linepose.geometry import rotations
 from linepose.geometry.pose import TURN_WORDS
 
 TURN_NAMES: Final = ("roll_rad", "pitch_rad", "yaw_rad")
+DATA: Final = "data"
+PRIOR: Final = "prior"
+BOTH: Final = "data and prior"
+_DECIDING: Final = 0.75  # of the weight; the sigma is then half the prior's or less
 NOTABLE_SHARE: Final = 0.35  # of the largest component: what is named in the weakest direction
 WORDS: Final = {
     "r_x_m": "r_x",
@@ -89,6 +93,19 @@ def identifiability(names: Sequence[str], posterior_covariance: ArrayLike, prior
         weakest_shrinkage=float(1 - values[-1]),
         correlation=covariance / np.outer(sigma, sigma),
     )
+
+
+def data_weight(sigma: ArrayLike, prior_sigma: ArrayLike, counted_in: bool) -> Floats:
+    """The data's share of the information, 0 to 1, of a parameter whose sigma has the prior counted in, or has not."""
+    ratio = np.square(np.asarray(sigma, dtype=float) / np.asarray(prior_sigma, dtype=float))
+    return np.clip(1 - ratio, 0.0, 1.0) if counted_in else 1 / (1 + ratio)
+
+
+def decider(weight: float) -> str:
+    """Who decided a parameter with this weight of the data, the prior counted in: `DATA`, `PRIOR` or `BOTH`."""
+    if weight >= _DECIDING:
+        return DATA
+    return PRIOR if weight <= 1 - _DECIDING else BOTH
 
 
 def in_words(names: Sequence[str], direction: ArrayLike) -> str:

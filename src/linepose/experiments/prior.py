@@ -13,8 +13,7 @@ import pandas as pd
 import pyarrow as pa
 from numpy.typing import ArrayLike
 
-from linepose.arrays import Floats
-from linepose.estimation.identifiability import identifiability, in_body_axes
+from linepose.estimation.identifiability import DATA, data_weight, decider, identifiability, in_body_axes
 from linepose.experiments.experiment import Experiment
 from linepose.experiments.inputs import Inputs, log_rows
 from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
@@ -22,11 +21,6 @@ from linepose.likelihood.prior import PosePrior
 from linepose.tables import flags, floats, texts
 
 _logger = logging.getLogger(__name__)
-
-DATA: Final = "data"
-PRIOR: Final = "prior"
-BOTH: Final = "data and prior"
-_DECIDING: Final = 0.75  # of the weight; the sigma is then half the prior's or less
 
 PRIOR_TABLE: Final = pa.schema(
     [
@@ -81,12 +75,6 @@ def identifiability_table(pose: ArrayLike, covariance: ArrayLike, hand: PosePrio
     )
 
 
-def data_weight(sigma: ArrayLike, prior_sigma: ArrayLike, counted_in: bool) -> Floats:
-    """The data's share of the information, 0 to 1, of a parameter whose sigma has the prior counted in, or has not."""
-    ratio = np.square(np.asarray(sigma, dtype=float) / np.asarray(prior_sigma, dtype=float))
-    return np.clip(1 - ratio, 0.0, 1.0) if counted_in else 1 / (1 + ratio)
-
-
 def _row(name: str, difference: float, sigma: float, prior_sigma: float, counted_in: bool) -> dict[str, object]:
     weight = float(data_weight(sigma, prior_sigma, counted_in))
     return {
@@ -96,14 +84,8 @@ def _row(name: str, difference: float, sigma: float, prior_sigma: float, counted
         "prior_sigma": float(prior_sigma),
         "data_weight": weight,
         "prior_counted_in": counted_in,
-        "decided_by": _decider(weight) if counted_in else DATA,
+        "decided_by": decider(weight) if counted_in else DATA,
     }
-
-
-def _decider(weight: float) -> str:
-    if weight >= _DECIDING:
-        return DATA
-    return PRIOR if weight <= 1 - _DECIDING else BOTH
 
 
 def _run(inputs: Inputs) -> dict[str, pd.DataFrame]:

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from math import isnan
 from typing import Final
 
+from linepose.adjustment.draws_in_words import draws_in_words
 from linepose.adjustment.lost_weight import most_lost_by_tails
 from linepose.adjustment.thresholds import (
     CAUSES,
-    FEWEST_EFFECTIVE_DRAWS,
     MISFIT_SIGMAS,
     TRUSTED_EIGENVALUE,
-    TRUSTED_SHAPE,
 )
 from linepose.estimation.identifiability import WORDS
 from linepose.pipeline.checks import CAMERA_SIGMAS, AdjustedEvidence, Check, Evidence, Level, LostMeasurement
@@ -119,18 +118,9 @@ def camera(adjusted: AdjustedEvidence) -> Check:
 
 def draws(adjusted: AdjustedEvidence) -> Check:
     """Whether the draws of the levels are worth enough."""
-    found = (
-        f"The draws of the levels are worth {adjusted.effective_draws:.0f}, Pareto shape {adjusted.pareto_shape:.2f}."
-    )
-    if adjusted.effective_draws >= FEWEST_EFFECTIVE_DRAWS and adjusted.pareto_shape <= TRUSTED_SHAPE:
-        return Check("Draws of the levels", Level.GOOD, found)
-    return Check(
-        "Draws of the levels",
-        Level.CARE,
-        f"{found} Expected are {FEWEST_EFFECTIVE_DRAWS:.0f} or more, and a shape below {TRUSTED_SHAPE}.",
-        "Raise adjustment.n_draws in config/config.yaml and run again.",
-        "the draws of the levels are too few",
-    )
+    told = draws_in_words(adjusted.effective_draws, adjusted.pareto_shape)
+    found = f"The draws of the levels are {told.found}."
+    return Check("Draws of the levels", Level.CARE if told.advice else Level.GOOD, found, told.advice, told.brief)
 
 
 def times(adjusted: AdjustedEvidence) -> Check:

@@ -83,7 +83,8 @@ class Evidence:
     `sigma_factor`, `influence` (sigmas that the pose moves without the most influential observation) and
     `truth_sigmas` (largest error of a parameter, in its sigmas) are None where nothing is known of them. `adjusted` is
     None for a noise model that removes observations. `hand_counts`: whether the hand measurement is a prior that
-    `hand_sigmas` is counted from without; `exact_axes`: of the body pose, reported with next to no sigma.
+    `hand_sigmas` is counted from without; `undecided`, `decided_by_both`: numbers that it knows better than the data,
+    or that neither decides alone; `exact_axes`: of the body pose, reported with next to no sigma.
     """
 
     n_observations: int
@@ -110,6 +111,7 @@ class Evidence:
     truth_parameter: str = ""
     hand_counts: bool = False
     exact_axes: tuple[str, ...] = ()
+    decided_by_both: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -224,7 +226,12 @@ def angular_diversity(evidence: Evidence) -> Check:
             f"the data do not decide {', '.join(evidence.undecided)}",
         )
     if evidence.adjusted is not None:
-        found += " The data say more than the hand measurement about every number."
+        both = ", ".join(evidence.decided_by_both)
+        found += (
+            f" Data and hand measurement decide {both} together, the data all else."
+            if both
+            else " The data say more than the hand measurement about every number."
+        )
         return Check("Angular diversity", Level.GOOD, found)
     if evidence.tilt_spread_deg >= TILT_SPREAD_DEG:
         return Check("Angular diversity", Level.GOOD, found)

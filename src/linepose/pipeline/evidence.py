@@ -9,12 +9,13 @@ import pyarrow as pa
 from scipy.special import chdtri
 
 from linepose.adjustment.thresholds import DOUBTFUL_WEIGHT
+from linepose.estimation.identifiability import BOTH, DATA, PRIOR, WORDS, data_weight, decider, in_body_axes
 from linepose.estimation.noise_models import noise_model
-from linepose.geometry.pose import N_PARAMETERS
+from linepose.geometry.pose import N_PARAMETERS, POSE_COLUMNS
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.pipeline.adjusted_intrinsics import INTRINSICS, farthest, intrinsics_from_table
 from linepose.pipeline.adjusted_schemas import LEVELS, MEASUREMENTS, VIEWS
-from linepose.pipeline.calibration import INLIERS, Calibration
+from linepose.pipeline.calibration import HAND_MEASURED, INLIERS, Calibration
 from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence, LostMeasurement
 from linepose.pipeline.navigation_checks import EXACT
 from linepose.pipeline.pose_tables import PoseNumber, rotation_vector_numbers
@@ -25,6 +26,7 @@ from linepose.survey.body_angles import body_angles_rad
 from linepose.survey.observations import AXES, VARIANCE_COLUMNS, Survey
 from linepose.tables import floats, optional_floats, whole_numbers
 
+_HALF: Final = 0.5  # of the weight: the data and the hand measurement know a number equally well
 # Of the experiments' results the columns that count here: what made them stands in a room above.
 _SPLITS: Final = pa.schema(optional_floats("mahalanobis"))
 _LEAVE_ONE_OUT: Final = pa.schema([*whole_numbers("left_out"), *floats("influence")])
@@ -33,7 +35,14 @@ _LEAVE_ONE_OUT: Final = pa.schema([*whole_numbers("left_out"), *floats("influenc
 def pose_numbers(calibration: Calibration) -> list[PoseNumber]:
     """The six numbers of the pose beside the hand measurement, and the truth where it is known."""
     hand = PoseWithCovariance(calibration.hand_measured.pose, calibration.hand_measured.covariance)
-    return rotation_vector_numbers(calibration.estimate, hand, calibration.true_pose)
+    return rotation_vector_numbers(calibration.estimate, hand, calibration.true_pose, hand_counts(calibration))
+
+
+def hand_counts(calibration: Calibration) -> bool:
+    """Whether the hand measurement is a prior that the estimate has counted in."""
+    if calibration.platform is None:
+        return bool(calibration.diagnostics["disagreement_sigmas"].notna().any())  # told only where it is a prior
+    return calibration.platform.prior == HAND_MEASURED
 
 
 def gather_evidence(calibration: Calibration) -> Evidence:
@@ -45,7 +54,8 @@ def gather_evidence(calibration: Calibration) -> Evidence:
     outliers = calibration.outlier_removal
     accepted = accepted_rows(outliers)
     worst = accepted.loc[accepted["error_px"].idxmax()]
-    hand_parameter, hand_sigmas = _from_hand(numbers, chain)
+    farthest_by_hand = max(numbers, key=lambda number: abs(number.difference_sigmas))
+    decided = _decided(calibration)
     wrong = max(numbers, key=lambda number: abs(number.error_sigmas or 0.0))
     most_influential, influence = _influence(results)
     return Evidence(
@@ -63,17 +73,18 @@ def gather_evidence(calibration: Calibration) -> Evidence:
         worst_observation=int(worst["observation"]),
         worst_error_px=float(worst["error_px"]),
         threshold_px=calibration.threshold_px,
-        hand_sigmas=hand_sigmas,
-        hand_parameter=hand_parameter,
+        hand_sigmas=abs(farthest_by_hand.difference_sigmas),
+        hand_parameter=farthest_by_hand.name,
         adjusted=None if noise_model(calibration.noise_model).removes_outliers else _adjusted(results, chain),
-        undecided=tuple(number.name for number in numbers if number.sigma >= number.hand_sigma),
+        undecided=tuple(decided[PRIOR]),
+        decided_by_both=tuple(decided[BOTH]),
         sigma_factor=_sigma_factor(results),
         most_influential=most_influential,
         influence=influence,
         truth_sigmas=None if wrong.error_sigmas is None else abs(wrong.error_sigmas),
         truth_parameter=wrong.name,
         noise_model=calibration.noise_model,
-        hand_counts=bool(np.isfinite(chain["disagreement_sigmas"]).any()),
+        hand_counts=hand_counts(calibration),
         exact_axes=exact_axes(calibration.observations, calibration.inliers),
     )
 
@@ -104,17 +115,19 @@ def _sigma_factor(results: Results) -> float | None:
     return float(distance.median() / median) if len(distance) else None
 
 
-def _from_hand(numbers: list[PoseNumber], chain: pd.DataFrame) -> tuple[str, float]:
-    """The number that lies farthest from the hand measurement, and how many sigmas.
+def _decided(calibration: Calibration) -> dict[str, list[str]]:
+    """Numbers of the pose in words, with turns about the body's axes, by who decided them as in `decider`.
 
-    Where the hand measurement is a prior of an adjustment, that of the data alone counts.
+    Without a prior the hand measurement decides nothing: `PRIOR` are those that it knows as well as the data.
     """
-    alone = chain["disagreement_sigmas"].to_numpy(dtype=float)
-    if len(alone) >= len(numbers) and np.isfinite(alone[: len(numbers)]).all():
-        farthest = int(np.argmax(np.abs(alone[: len(numbers)])))
-        return numbers[farthest].name, float(abs(alone[farthest]))
-    most = max(numbers, key=lambda number: abs(number.difference_sigmas))
-    return most.name, abs(most.difference_sigmas)
+    counted_in, hand = hand_counts(calibration), calibration.hand_measured.body_covariance
+    names, covariance = in_body_axes(POSE_COLUMNS, calibration.estimate.pose, calibration.estimate.covariance)
+    weights = data_weight(np.sqrt(np.diag(covariance)), np.sqrt(np.diag(hand)), counted_in)
+    found: dict[str, list[str]] = {DATA: [], PRIOR: [], BOTH: []}
+    for name, weight in zip(names, weights, strict=True):
+        who = decider(weight) if counted_in else (DATA if weight > _HALF else PRIOR)
+        found[who].append(WORDS.get(name, name))
+    return found
 
 
 def _adjusted(results: Results, chain: pd.DataFrame) -> AdjustedEvidence:

@@ -109,6 +109,12 @@ def read_observations(platform: Platform, folder: Path) -> pd.DataFrame:
     return with_navigation(read_points(platform, folder), platform, folder)
 
 
+def measurements_in_words(points: pd.DataFrame) -> str:
+    """How many measurements of how many points, in how many views: columns `observation` and `point`."""
+    n_points, n_views = points["point"].nunique(), points["observation"].nunique()
+    return f"{len(points)} measurements of {n_points} points in {n_views} views"
+
+
 def check_readable(platform: Platform, folder: Path) -> str:
     """What the folder of a platform's records holds, in words; raises InputError for the first fault.
 
@@ -116,8 +122,7 @@ def check_readable(platform: Platform, folder: Path) -> str:
     """
     source = platform.source
     if isinstance(source, LabelledViewsSection):
-        observations = read_observations(platform, folder)
-        return f"{len(observations)} points in {observations['observation'].nunique()} views"
+        return measurements_in_words(read_observations(platform, folder))
     scans = select_scans(folder, source.scans, source.left_out)
     line_times = line_times_of(source)
     for path in scans.values():

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linepose.adjustment.thresholds import OPEN_SHARE
 from linepose.arrays import Floats
 from linepose.geometry.pose import euler_covariance, euler_pose
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
@@ -16,7 +17,10 @@ _GIMBAL_DEG = 89.0
 
 @dataclass(frozen=True)
 class PoseNumber:
-    """One number of the pose in its unit: estimate, hand measurement, the sigma of each, and the truth if known."""
+    """One number of the pose in its unit: estimate, hand measurement, the sigma of each, and the truth if known.
+
+    hand_counts: whether the hand measurement is a prior that the estimate and its sigma have counted in.
+    """
 
     name: str
     unit: str
@@ -25,6 +29,7 @@ class PoseNumber:
     hand: float
     hand_sigma: float
     truth: float | None = None
+    hand_counts: bool = False
 
     @property
     def difference(self) -> float:
@@ -33,8 +38,15 @@ class PoseNumber:
 
     @property
     def difference_sigmas(self) -> float:
-        """The difference in sigmas of the difference."""
-        return self.difference / float(np.hypot(self.sigma, self.hand_sigma))
+        """The difference in sigmas of the difference.
+
+        Where the hand measurement counts, as far as the data alone lie from it; in its own sigmas where they say
+        nothing of this number.
+        """
+        if not self.hand_counts:
+            return self.difference / float(np.hypot(self.sigma, self.hand_sigma))
+        is_open = self.sigma > OPEN_SHARE * self.hand_sigma
+        return self.difference / (self.hand_sigma if is_open else math.sqrt(self.hand_sigma**2 - self.sigma**2))
 
     @property
     def error_sigmas(self) -> float | None:
@@ -48,15 +60,15 @@ class PoseNumber:
 
 
 def rotation_vector_numbers(
-    estimate: PoseWithCovariance, hand: PoseWithCovariance, truth: Floats | None = None
+    estimate: PoseWithCovariance, hand: PoseWithCovariance, truth: Floats | None = None, hand_counts: bool = False
 ) -> list[PoseNumber]:
     """The six parameters, m and rad."""
     names = [*_POSITION, "theta e_x", "theta e_y", "theta e_z"]
-    return _numbers(names, ["m"] * 3 + ["rad"] * 3, estimate, hand, truth)
+    return _numbers(names, ["m"] * 3 + ["rad"] * 3, estimate, hand, truth, hand_counts)
 
 
 def euler_numbers(
-    estimate: PoseWithCovariance, hand: PoseWithCovariance, truth: Floats | None = None
+    estimate: PoseWithCovariance, hand: PoseWithCovariance, truth: Floats | None = None, hand_counts: bool = False
 ) -> list[PoseNumber]:
     """Roll, pitch, yaw (zyx intrinsic) in degrees; none where the pitch is too near 90 deg to tell them apart."""
     poses = [estimate.pose, hand.pose] + ([] if truth is None else [truth])
@@ -73,6 +85,7 @@ def euler_numbers(
         in_euler[0],
         in_euler[1],
         None if truth is None else scale @ euler_pose(truth),
+        hand_counts,
     )
     return numbers[3:]
 
@@ -83,6 +96,7 @@ def _numbers(
     estimate: PoseWithCovariance,
     hand: PoseWithCovariance,
     truth: Floats | None,
+    hand_counts: bool,
 ) -> list[PoseNumber]:
     sigma, hand_sigma = (np.sqrt(np.diag(one.covariance)) for one in (estimate, hand))
     return [
@@ -94,6 +108,7 @@ def _numbers(
             float(hand.pose[k]),
             float(hand_sigma[k]),
             None if truth is None else float(truth[k]),
+            hand_counts,
         )
         for k in range(len(names))
     ]

@@ -6,7 +6,7 @@ from linepose.arrays import Floats
 from linepose.estimation.noise_models import noise_model
 from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.pipeline.calibration import Calibration
-from linepose.pipeline.evidence import gather_evidence, pose_numbers
+from linepose.pipeline.evidence import gather_evidence, hand_counts, pose_numbers
 from linepose.pipeline.pose_tables import PoseNumber, euler_numbers
 from linepose.pipeline.verdict import Verdict, judge
 
@@ -62,7 +62,7 @@ def summarise(calibration: Calibration) -> PlatformSummary:
         noise_model=calibration.noise_model,
         verdict=judge(evidence),
         rotation_vector=pose_numbers(calibration),
-        euler=euler_numbers(calibration.estimate, hand, calibration.true_pose),
+        euler=euler_numbers(calibration.estimate, hand, calibration.true_pose, hand_counts(calibration)),
         quaternion=calibration.quaternion_wxyz,
         n_observations=evidence.n_observations,
         n_accepted=evidence.n_accepted,

@@ -203,7 +203,7 @@ def settings_from_dict(section: Mapping[str, Any], place: str = "simulation") ->
                 f"{place}.faults",
                 f"observation {fault.observation}",
                 f"1 to {len(settings.passes)}",
-                "name one of the passes",
+                "name one of the passes; faults that come with `like` are left out by `faults: []`",
             )
     return settings
 

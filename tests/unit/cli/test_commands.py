@@ -9,6 +9,7 @@ import subprocess
 import sys
 from types import SimpleNamespace
 
+import pandas as pd
 import pytest
 import yaml
 from typer.testing import CliRunner
@@ -18,6 +19,7 @@ from linepose.cli.app import app
 from linepose.cli.check import _without_warnings
 from linepose.config.platform import load_platform
 from linepose.errors import InputError
+from linepose.survey.observations import EULER_COLUMNS, POSITION_COLUMNS
 from unit import made_up
 from unit.recorded_files import write_platform_files
 
@@ -203,6 +205,20 @@ def test_new_names_no_covariances_where_the_preset_has_them(here):
     assert given("new", "mine", *GIVEN, "--navigation-file", "a.txt").exit_code == 0
     source = load_platform(here / "config" / "platforms", "mine").source
     assert (source.navigation.preset, source.covariances) == ("pospac", None)
+
+
+@pytest.mark.parametrize("name", ["navigation.parquet", "navigation.csv"])
+def test_new_knows_our_own_table_of_poses(here, name):
+    columns = ("time_us", *POSITION_COLUMNS, *EULER_COLUMNS)
+    folder = here / "data" / "mine"
+    folder.mkdir(parents=True)
+    table = pd.DataFrame({column: [0, 1] for column in columns})
+    (table.to_parquet if name.endswith("parquet") else table.to_csv)(folder / name, index=False)
+    assert given("new", "mine", *GIVEN, "--navigation-file", f"data/mine/{name}").exit_code == 0
+    assert load_platform(here / "config" / "platforms", "mine").source.navigation == name
+    assert given("new", "mine", *GIVEN, "--source", "scans", "--force").exit_code == 0  # it is there: named unasked
+    found = load_platform(here / "config" / "platforms", "mine").source.navigation
+    assert found == ("navigation.parquet" if name.endswith("parquet") else "navigation.csv")
 
 
 def test_new_tells_a_log_that_it_does_not_know(here):

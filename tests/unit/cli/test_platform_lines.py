@@ -8,7 +8,7 @@ from linepose.cli.platform_lines import PlatformLines
 
 FAILED = """\
 linepose.extract: data/b.csv: row 3: found x, expected a number; correct it
-linepose.extract: 60 points in 4 views of data/c
+linepose.extract: 60 measurements of 15 points in 4 views of data/c
 Error in rule extract:
     message: None
     jobid: 7

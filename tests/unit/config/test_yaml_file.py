@@ -31,6 +31,16 @@ BOMB = "a0: &a0 [x, x, x, x, x, x, x, x]\n" + "".join(
         ("a: 1:30", "found 1:30"),
         ("a: [", "expected YAML"),
         ("a: \x00", "expected YAML"),
+        ("a: 1\nb: [1, 2\nc: 3\n", "a.yaml, line 2: found a bracket [ that is not closed"),
+        ("a: 1\nb: {c: 1\nd: 3\n", "a.yaml, line 2: found a bracket { that is not closed"),
+        ("a: b: c", "line 1: found a second colon"),
+        ("a: 1\n  b: 2\n", "line 2: found a second colon, or a line indented too far"),
+        ("a:\n  b: 1\n c: 2\n", "line 3: found a line indented unlike"),
+        ("a:\n\tb: 1\n", "line 2: found a tab"),
+        ("a: 1\nb: 'c\nd: 1\n", "line 2: found a quotation mark that is not closed"),
+        ("a: 1\nwords\nb: 2\n", "line 2: found a line without a colon"),
+        ("a: *b", "line 1: found an alias"),
+        ("a: @b", "line 1: found "),
     ],
 )
 def test_is_one_line(text, told):
@@ -38,6 +48,7 @@ def test_is_one_line(text, told):
         parsed_yaml(text, "a.yaml")
     assert told in str(caught.value)
     assert str(caught.value).startswith("a.yaml")
+    assert "^" not in str(caught.value)
     assert str(caught.value).isprintable()
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from linepose.config.platform import Platform
-from linepose.experiments.prior import data_weight, identifiability_table, prior_table
+from linepose.estimation.identifiability import data_weight
+from linepose.experiments.prior import identifiability_table, prior_table
 from linepose.likelihood.prior import pose_prior
 from unit import made_up
 

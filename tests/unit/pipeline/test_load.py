@@ -9,7 +9,7 @@ from unit.planted_faults import FAULTS, planted, told_of
 
 @pytest.mark.field
 def test_whole_record_is_told_in_numbers(field_data, ladybird):
-    assert check_readable(ladybird, field_data) == "375 points in 25 views"
+    assert check_readable(ladybird, field_data) == "375 measurements of 15 points in 25 views"
 
 
 @pytest.mark.field

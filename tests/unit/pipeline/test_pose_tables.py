@@ -20,6 +20,19 @@ def test_numbers_stand_beside_the_hand_measurement_in_sigmas_of_the_difference()
     assert number.error_sigmas is None
 
 
+def test_beside_a_prior_that_counts_the_difference_is_that_of_the_data_alone():
+    """From data and prior apart: by the textbook the weighted mean has 1/sigma^2 the sum of both's."""
+    alone, sigma, by_hand = 0.3, 0.05, 0.1
+    weight = by_hand**2 / (sigma**2 + by_hand**2)
+    pose, covariance = HAND.copy(), COVARIANCE.copy()
+    pose[0], covariance[0, 0] = HAND[0] + weight * alone, weight * sigma**2
+    covariance[1, 1], pose[1] = (0.95 * by_hand) ** 2, HAND[1] + 0.02
+    hand = PoseWithCovariance(HAND, np.diag([by_hand] * 3 + [0.04] * 3) ** 2)
+    told = rotation_vector_numbers(PoseWithCovariance(pose, covariance), hand, hand_counts=True)
+    assert told[0].difference_sigmas == pytest.approx(alone / np.hypot(sigma, by_hand), rel=1e-9)
+    assert told[1].difference_sigmas == pytest.approx(0.02 / by_hand)  # the data have said nothing of it
+
+
 def test_the_error_against_the_truth_is_in_sigmas_of_the_estimate():
     number = rotation_vector_numbers(ESTIMATE, ESTIMATE, POSE - 0.06)[2]
     assert number.error_sigmas == pytest.approx(1.0)

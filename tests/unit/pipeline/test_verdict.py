@@ -129,6 +129,13 @@ def test_little_tilt_is_in_the_sigmas_of_an_adjustment_as_long_as_the_data_say_s
     assert "second height" in open_height.advice
 
 
+def test_the_data_are_said_to_decide_all_only_where_they_do():
+    found = named(judge(replace(ADJUSTED, decided_by_both=("r_z",))), "Angular diversity").found
+    assert "decide r_z together" in found
+    assert "about every number" not in found
+    assert "about every number" in named(judge(ADJUSTED), "Angular diversity").found
+
+
 def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
     verdict = judge(ADJUSTED)
     assert verdict.level == Level.GOOD
@@ -150,7 +157,7 @@ def test_an_adjustment_in_order_is_judged_by_checks_of_its_own():
         ({"target_misfit": 4.1}, "Known target", Level.CARE, "target.sigma_m"),
         ({"navigation_error": 3.1}, "Size of the errors", Level.CARE, "units"),
         ({"navigation_error": 10.1}, "Size of the errors", Level.BAD, "linepose check"),
-        ({"pareto_shape": 0.71}, "Draws of the levels", Level.CARE, "adjustment.n_draws"),
+        ({"pareto_shape": 0.71}, "Draws of the levels", Level.CARE, "Add views"),
         (
             {"doubtful": tuple(DoubtfulView(n, 0.1, "jump") for n in range(1, 10))},
             "Weights",

@@ -24,7 +24,7 @@ def test_settings_are_hashable(section):
         ({"sead": 3}, "simulation.sead"),
         ({"true_pose": [1.0, 2.0]}, "simulation.true_pose"),
         ({"board": {"position_m": [0, 0, 0], "euler_deg": "east"}}, "simulation.board.euler_rad"),
-        ({"faults": [{"observation": 4}]}, "simulation.faults"),
+        ({"faults": [{"observation": 4}]}, "simulation.faults.*`like` are left out by `faults: .]`"),
     ],
 )
 def test_wrong_key_is_named(section, change, place):

@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pa_csv
+import pyarrow.parquet as pa_parquet
 
 from linepose.arrays import Floats
 from linepose.errors import InputError
@@ -18,6 +19,7 @@ from linepose.tables import read_parquet
 
 _COLUMNS: Final = ("time_us", *POSITION_COLUMNS, *EULER_COLUMNS)
 _FEWEST_ROWS: Final = 2
+_LONGEST_HEADING: Final = 10_000  # characters that are looked at
 
 
 def read_navigation_log(path: Path) -> NavigationLog:
@@ -37,6 +39,19 @@ def read_navigation_log(path: Path) -> NavigationLog:
         place, found = f"{path}, row {rows[row + 1] + 1}, time_us", f"time {time_us[rows[row]]} with another pose"
         raise InputError(place, found, "one pose at a time", "remove one of the rows")
     return NavigationLog(time_us[rows], position[rows], euler[rows], str(path))
+
+
+def is_own_log(path: Path) -> bool:
+    """Whether a file is our own table of poses, by the names of its columns."""
+    try:
+        if path.suffix == ".parquet":
+            names = pa_parquet.read_schema(path).names
+        else:
+            with path.open(encoding="utf-8-sig") as lines:
+                names = [name.strip().strip('"') for name in lines.readline(_LONGEST_HEADING).split(",")]
+    except (pa.ArrowException, OSError, ValueError):
+        return False
+    return set(_COLUMNS) <= set(names)
 
 
 def _read_columns(path: Path) -> pa.Table:

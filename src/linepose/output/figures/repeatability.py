@@ -84,7 +84,7 @@ def _named_pair(r: Calibration) -> pd.DataFrame | None:
 
 
 def _without_splits(platform: Platform) -> str:
-    if is_adjusted(platform):
+    if is_adjusted(platform) and has_own_halves(platform):
         return "The figure on random halves shows the same."
     told = "This experiment was not asked for: experiments.repeatability has no splits in the platform's file."
     return "" if has_own_halves(platform) else told

@@ -192,6 +192,13 @@ def test_what_makes_no_sense_for_the_adjustment_has_a_reason():
         assert not reasons[name]
 
 
+def test_no_figure_on_halves_is_named_where_there_is_none():
+    without = made_up.platform(noise_model="adjustment", experiments={"basin": None, "repeatability": None})
+    reasons = {entry.name: entry.left_out(without) for entry in FIGURES}
+    assert reasons["halves"]
+    assert "experiments.repeatability has no splits" in reasons["repeatability"]
+
+
 def test_without_an_adjustment_its_figures_are_left_out():
     alone = made_up.platform(experiments={})
     reasons = {entry.name: entry.left_out(alone) for entry in FIGURES}

@@ -1,6 +1,7 @@
 """The report read as a browser reads it: pictures, links, headings, alternative texts, tables; nothing from outside."""
 
 import base64
+import dataclasses
 import io
 import re
 from html.parser import HTMLParser
@@ -11,6 +12,8 @@ import pytest
 from PIL import Image
 
 from linepose.errors import InputError
+from linepose.experiments.prior import prior_table
+from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.output.figures.registry import FIGURES
 from linepose.output.report.pictures import embedded
 from linepose.output.report.provenance import settings_text
@@ -141,6 +144,21 @@ def test_evidence_is_gathered_from_the_results(results):
     assert evidence.undecided == ()
     # two of the four accepted observations are rolled by 5 deg, two are not: 2.5 deg from their mean
     assert evidence.tilt_spread_deg == pytest.approx(2.5)
+
+
+def test_verdict_and_table_of_the_prior_agree_on_what_the_data_decide(results):
+    """The prior's table has a number by "prior" exactly where the verdict has it undecided."""
+    platform = made_up.platform(prior="hand_measured")
+    ratio = np.sqrt([0.5, 0.5, 0.9, 0.1, 0.1, 0.1])  # of the sigmas, with the prior counted in: weights 0.5, 0.1, 0.9
+    hand = platform.hand_measured
+    wide = np.diag(ratio) @ hand.covariance @ np.diag(ratio)
+    pose = PoseWithCovariance(hand.pose, wide)
+    calibration = dataclasses.replace(results, platform=platform)
+    vars(calibration)["estimate"] = pose
+    table = prior_table(pose.pose, pose.covariance, platform.hand_measurement(), True).set_index("parameter")
+    assert table.loc["r_z_m", "decided_by"] == "prior"
+    evidence = gather_evidence(calibration)
+    assert (evidence.undecided, evidence.decided_by_both) == (("r_z",), ("r_x", "r_y"))
 
 
 def test_tilt_spread_of_level_observations_is_zero():
