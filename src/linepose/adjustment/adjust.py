@@ -161,3 +161,6 @@ def _known_of_all(measurements: Measurements, few: Measurements, fitted: KnownPo
 def _check_camera(camera: Camera) -> None:
     if fault := fault_of_certain(camera.sigmas):
         raise InputError(fault.key, fault.found, fault.expected, fault.remedy)
+    for name, value in camera.sigmas:
+        if value is not None and not (np.isfinite(value) and value >= 0):
+            raise InputError(f"camera.sigmas.{name}", f"{value}", "a positive number", "give how well it is known")
