@@ -12,14 +12,16 @@ with stage(snakemake) as log:
     from linepose.inputs.targets.detectors import detector_of
     from linepose.inputs.targets.measured import DETECTION, EXTRACTION_ACCURACY, DetectedBoard, measure_extraction
     from linepose.pipeline.load import hand_view
+    from linepose.simulation.board import target_of
     from linepose.tables import write_table
 
     platform = Platform.model_validate(snakemake.params.platform)
     folder, source = Path(snakemake.input.folder), platform.source
     scans = select_scans(folder, source.scans, source.left_out)
     labels, truth = read_labels(folder / source.labels, list(scans)), pd.read_parquet(snakemake.input.truth)
-    detector = detector_of(platform.target, source.refinement, lambda: hand_view(platform, folder))
-    board = DetectedBoard(platform.target, detector, source.refinement)
+    target = target_of(platform.simulation.board)
+    detector = detector_of(target, source.refinement, lambda: hand_view(platform, folder))
+    board = DetectedBoard(target, detector, source.refinement)
     measured = measure_extraction(scans, labels, truth, board, platform.camera.n_pixels)
     write_table(measured.accuracy, snakemake.output.accuracy, EXTRACTION_ACCURACY)
     write_table(measured.detection, snakemake.output.detection, DETECTION)

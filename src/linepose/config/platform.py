@@ -23,6 +23,7 @@ from linepose.config.names import check_name
 from linepose.config.outline import OutlineSection
 from linepose.config.points import PointsSection
 from linepose.config.simulated_files import check_simulated_files
+from linepose.config.simulated_target import check_simulated_target
 from linepose.config.view_angles import with_named_table, with_view_angles
 from linepose.config.yaml_file import read_yaml
 from linepose.errors import InputError
@@ -32,6 +33,7 @@ from linepose.geometry.camera_sigmas import fault_of_certain
 from linepose.geometry.pose import N_PARAMETERS
 from linepose.inputs.source import LabelledViewsSection, ScansSection
 from linepose.settings import Settings, SettingsError, faults_of, validated
+from linepose.simulation.board import target_of
 from linepose.simulation.flight_section import FlightSection
 from linepose.simulation.settings import SimulationSettings, settings_from_dict
 from linepose.simulation.true_camera import TrueCamera
@@ -205,6 +207,12 @@ class Platform(Settings):
             found = "points.control_points with source.points matching: tie points have no names to be known by"
             remedy = "leave points.control_points out (points.ground may stay), or label the points"
             raise SettingsError(found, "source.points labels or detection", remedy)
+        return self
+
+    @model_validator(mode="after")
+    def _describes_what_is_simulated(self) -> "Platform":
+        if self.simulation is not None:
+            check_simulated_target(self.target, target_of(self.simulation.board))
         return self
 
     @model_validator(mode="after")

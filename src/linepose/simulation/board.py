@@ -10,8 +10,15 @@ from linepose.arrays import Floats
 from linepose.geometry import rotations
 from linepose.simulation.settings import BoardSettings
 from linepose.survey.pattern import board_points
+from linepose.survey.targets.registry import Target
+from linepose.survey.targets.rings import RingsSection
 
 PRINT_CELL_M: Final = 0.0005  # of a picture of the print, far below what a pixel sees
+
+
+def target_of(settings: BoardSettings) -> Target:
+    """What stands in the world: the paper's board where nothing else is told."""
+    return RingsSection() if settings.target is None else settings.target
 
 
 def points_on_board(settings: BoardSettings) -> Floats:

@@ -302,3 +302,38 @@ def test_a_simulated_platform_reads_what_its_simulation_writes(tmp_path, like, s
     unused = {"labels": "mine.csv", "points": "detection"} if like == "ladybird-sim" else {"labels": "mine.csv"}
     (tmp_path / "robot.yaml").write_text(yaml.safe_dump({"like": like, "source": unused}))
     assert load_platform(tmp_path, "robot").source.labels == "mine.csv"
+
+
+CHARUCO = {"kind": "charuco", "rows": 5, "columns": 7}
+
+
+@pytest.mark.parametrize(
+    ("target", "stands", "told"),
+    [
+        (CHARUCO, None, "found target.kind charuco with simulation.board.target.kind rings, .*; give both the same"),
+        (None, CHARUCO, "found target.kind rings with simulation.board.target.kind charuco"),
+        (CHARUCO | {"columns": 8}, CHARUCO, "found target.columns 8 with simulation.board.target.columns 7"),
+        (CHARUCO, CHARUCO, None),
+        (CHARUCO | {"known": True, "sigma_m": 1e-3}, CHARUCO, None),
+        ({"kind": "points"}, CHARUCO, None),
+    ],
+)
+def test_the_target_is_the_board_that_is_simulated(tmp_path, target, stands, told):
+    for name in ("ladybird-sim", "ladybird"):
+        (tmp_path / f"{name}.yaml").write_bytes((PLATFORMS / f"{name}.yaml").read_bytes())
+    given = {"like": "ladybird-sim", "simulation": {"board": {"target": stands}}, "source": {"points": "labels"}}
+    given |= {"noise_model": "adjustment"} | ({} if target is None else {"target": target})
+    (tmp_path / "robot.yaml").write_text(yaml.safe_dump(given))
+    if told is None:
+        assert load_platform(tmp_path, "robot").target.kind == target["kind"]
+    else:
+        assert re.search(told, message_of(tmp_path, "robot"))
+
+
+def test_the_docs_example_of_a_simulated_board_is_a_platform(tmp_path):
+    for name in ("ladybird-sim", "ladybird"):
+        (tmp_path / f"{name}.yaml").write_bytes((PLATFORMS / f"{name}.yaml").read_bytes())
+    text = (PLATFORMS.parents[1] / "docs" / "scans.md").read_text()
+    (tmp_path / "robot.yaml").write_text(re.search(r"```yaml\n(like: ladybird-sim\n.*?)```", text, re.S)[1])
+    platform = load_platform(tmp_path, "robot")
+    assert (platform.target.kind, platform.simulation.seed, platform.simulation.faults) == ("charuco", 7, ())
