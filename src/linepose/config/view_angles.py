@@ -83,7 +83,7 @@ def read_view_angles(
         table["pixel"] = [one - 1 for one in pixels]
     fault = None if n_pixels is None else fault_of_width(table["pixel"], n_pixels, width_key)
     if fault is not None:
-        raise InputError(str(path), fault.found, fault.expected, fault.remedy)
+        raise _swapped(table, path) or InputError(str(path), fault.found, fault.expected, fault.remedy)
     return table
 
 
@@ -128,4 +128,14 @@ def _check(table: Mapping[str, list[float]], lines: list[int], path: Path) -> No
     fault = fault_of_rows(table["pixel"], table["across_deg"], table.get("along_deg", []))
     if fault is not None:
         where = "" if fault.row is None else f", line {lines[fault.row]}, {fault.column}"
-        raise InputError(f"{path}{where}", fault.found, fault.expected, fault.remedy)
+        raise _swapped(table, path) or InputError(f"{path}{where}", fault.found, fault.expected, fault.remedy)
+
+
+def _swapped(table: Mapping[str, list[float]], path: Path) -> InputError | None:
+    """What to tell of a table at fault whose angles count up as pixels do, and whose pixels do not."""
+    pixel, across = table["pixel"], table["across_deg"]
+    counts = [[float(k) for k in range(first, first + len(across))] for first in (0, 1)]
+    if across not in counts or all(one.is_integer() for one in pixel):
+        return None
+    found, expected = f"{across[0]:g} to {across[-1]:g} in steps of 1 under across_deg", "pixels under pixel"
+    return InputError(f"{path}, heading", found, expected, "columns are swapped: exchange the headings")

@@ -98,6 +98,27 @@ def test_what_is_no_table_is_told_in_one_line(written, rows, camera, found):
         load_platform(written(rows, **camera), "robot")
 
 
+@pytest.mark.parametrize(("n_pixels", "first"), [(4, 0), (4, 1), (200, 0), (None, 1)])
+def test_swapped_columns_are_told_as_such(tmp_path, n_pixels, first):
+    """Few pixels lie within the bounds of angles, and are told by the width alone; many lie beyond them."""
+    n_rows = n_pixels or 120
+    angles = np.linspace(-10.05, 10.05, n_rows)
+    rows = [f"{angle:.4f},{first + k}" for k, angle in enumerate(angles)]
+    (tmp_path / "angles.csv").write_text("\n".join(["pixel,across_deg", *rows]))
+    with pytest.raises(InputError, match=r"angles.csv, heading: .* columns are swapped: exchange the headings"):
+        read_view_angles(tmp_path / "angles.csv", n_pixels)
+    (tmp_path / "angles.csv").write_text("\n".join(["across_deg,pixel", *rows]))
+    assert len(read_view_angles(tmp_path / "angles.csv", n_pixels)["pixel"]) == n_rows
+
+
+def test_whole_degrees_are_no_swapped_pixels(tmp_path):
+    (tmp_path / "angles.csv").write_text("pixel,across_deg\n0.5,0\n10.5,1\n20.5,2\n30.5,3\n")
+    assert read_view_angles(tmp_path / "angles.csv")["across_deg"] == [0.0, 1.0, 2.0, 3.0]
+    (tmp_path / "angles.csv").write_text("pixel,across_deg\n0,0\n10,1\n10,2\n30,3\n")
+    with pytest.raises(InputError, match="found pixel 10 again"):
+        read_view_angles(tmp_path / "angles.csv")
+
+
 def test_a_bad_table_is_one_fault(written):
     (fault,) = platform_faults(written(FALLING), "robot")
     assert fault.place.endswith("angles.csv, line 3, across_deg")
