@@ -17,11 +17,25 @@ _EXPLAINED: Final = 3.0  # sigmas of the hand measurement that an error may have
 _NEAR_M: Final = 0.05
 _FAR_M: Final = 200.0
 _LONGEST_ARM_M: Final = 10.0
+_LONGEST_VEHICLE_M: Final = 50.0
 _SUBJECT: Final = "hand measurement"
 ADVICE: Final = (
     "check hand_measured: camera in body axes (x forward, y right, z down), angles roll, pitch, yaw from camera to "
     "body (zyx intrinsic), camera x along the scan line, z the optical axis"
 )
+
+
+def arm_findings(position_m: Floats) -> list[Finding]:
+    """What a hand-measured position (3,) says of its unit: an error where no vehicle is as long, which stands for all.
+
+    An arm that is a few hundred times too long makes nonsense of what points and conventions then say.
+    """
+    arm_m = float(np.linalg.norm(position_m))
+    found = f"the camera is {arm_m:.3g} m from the body's origin"
+    advice = "give hand_measured.position_m in metres, from the navigation's origin"
+    if arm_m > _LONGEST_VEHICLE_M:
+        return [error(_SUBJECT, found, advice)]
+    return [warning(_SUBJECT, found, advice)] if arm_m > _LONGEST_ARM_M else []
 
 
 def hand_findings(survey: Survey, camera: Camera, pose: Floats, covariance: Floats) -> tuple[list[Finding], Floats]:
@@ -30,12 +44,7 @@ def hand_findings(survey: Survey, camera: Camera, pose: Floats, covariance: Floa
     The points are those of the paper's equations, in which points behind the camera count as if in front; of a survey
     from above they are the feet of rays on the ground.
     """
-    findings = []
-    if np.linalg.norm(pose[:3]) > _LONGEST_ARM_M:
-        found = f"the camera is {np.linalg.norm(pose[:3]):.3g} m from the body's origin"
-        findings.append(
-            warning(_SUBJECT, found, "give hand_measured.position_m in metres, from the navigation's origin")
-        )
+    findings = arm_findings(pose[:3])
     point_m, error_px = _points_and_errors(survey, camera, pose)
     distance = in_camera(pose, survey.position_m, survey.euler_rad, point_m)[..., 2]
     seen = np.isfinite(error_px)

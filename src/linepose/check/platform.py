@@ -17,7 +17,7 @@ from linepose.check.conventions.findings import agreed, convention_findings
 from linepose.check.exchanges import exchange_findings
 from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, error, of_fault, ok
 from linepose.check.flight import flight_findings
-from linepose.check.hand_measured import hand_findings
+from linepose.check.hand_measured import arm_findings, hand_findings
 from linepose.check.labels import count_findings, position_findings
 from linepose.check.motion import motion_findings
 from linepose.check.points import file_findings, point_findings
@@ -179,6 +179,9 @@ def geometry_findings(
     survey, camera = survey_from_table(observations), settings.intrinsics()
     findings = motion_findings(survey)
     pose, covariance = settings.start_pose(), settings.start_covariance()
+    arm = arm_findings(pose[:3])
+    if any(finding.level == Level.ERROR for finding in arm):
+        return [*arm, *(replace(one, advice="") for one in findings)], ()
     try:
         more, point_m = hand_findings(survey, camera, pose, covariance)
     except LineposeError as fault:

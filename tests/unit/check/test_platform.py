@@ -154,6 +154,10 @@ def millimetres(root):
     change_platform(root, lambda p: p["camera"].update(focal_length_m=8.2))
 
 
+def tape_in_mm(root):
+    change_platform(root, lambda p: p["hand_measured"].update(position_m=[200, 0, -800]))
+
+
 def roll_sign(root):
     change_views(root, lambda t: t.__setitem__("roll", -t["roll"]))
 
@@ -193,6 +197,7 @@ PLANTED = {
     behind: (Level.ERROR, "hand measurement", "behind the camera", "first follow the advice on conventions"),
     far_off: (Level.WARNING, "hand measurement", "its sigmas explain", "zyx intrinsic"),
     millimetres: (Level.ERROR, "camera", "8.2 m", "metres"),
+    tape_in_mm: (Level.ERROR, "hand measurement", "825 m from the body's origin", "in metres"),
     from_east: (Level.WARNING, "body pose", "off its heading", "first follow the advice on conventions"),
     roll_sign: (Level.ERROR, "conventions", "roll has the other sign", r"set navigation.corrections: \[roll_sign\]$"),
     flipped_line: (Level.ERROR, "conventions", "scan line is flipped", r"set hand_measured.euler_deg: \["),
@@ -216,6 +221,12 @@ def test_planted_mistake_is_named(project, plant):
     mine = [f for f in check_platform("mine", project).of(level) if f.subject == subject and re.search(found, f.found)]
     assert len(mine) == 1
     assert re.search(advice, mine[0].advice)
+
+
+def test_a_tape_in_millimetres_is_told_alone(project):
+    tape_in_mm(project)
+    (told,) = [one for one in check_platform("mine", project).findings if one.level > Level.OK and one.advice]
+    assert "in metres" in told.advice
 
 
 def test_only_one_finding_advises_what_to_change(project):

@@ -24,6 +24,9 @@ from linepose.likelihood.published import PublishedLikelihood
 
 ALIKE: Final = 3.0  # in -log: odds of 20, below which two explanations are not told apart
 CONVINCING: Final = 10.0  # in -log: odds of 22,000, above which a mistake is believed
+_MOST_PX: Final = 20.0  # mean error from which on points do not fit, whatever is undone
+_FEW_PX: Final = 10.0  # below which they do
+_SHARE: Final = 0.2  # of the error as given, to which undoing a mistake brings that of points in between
 _FIRST_STEPS: Final = 6  # after which explanations that fit far worse than the best are left
 _FAR_WORSE: Final = 10.0  # times the least -log
 _MAXIMUM_STEPS: Final = 40
@@ -64,7 +67,7 @@ class Examination:
     def best(self) -> tuple[Explanation, ...]:
         """What explains the data: the best, and all that the data cannot tell from it and that assume no more mistakes.
 
-        The data as given alone, where nothing explains them convincingly better and nearer to the pixels.
+        The data as given alone, where nothing explains them convincingly better, and so that the points fit.
         """
         given = self.as_given
         better = [
@@ -72,6 +75,7 @@ class Examination:
             for one in self.explanations
             if one.neg_log_posterior < given.neg_log_posterior - CONVINCING
             and not one.mean_error_px >= given.mean_error_px
+            and _fits(one.mean_error_px, given.mean_error_px)
         ]
         if not better:
             return (given,)
@@ -80,9 +84,19 @@ class Examination:
         return tuple(one for one in alike if one.mistake.n_changes == fewest)
 
     @property
+    def fits_as_given(self) -> bool:
+        """Whether the points fit as they are."""
+        return self.as_given.mean_error_px < _MOST_PX
+
+    @property
     def is_mistaken(self) -> bool:
         """Whether a mistake explains the data convincingly better than taking them as given."""
         return self.best[0] is not self.as_given
+
+
+def _fits(error_px: float, given_px: float) -> bool:
+    """Whether points with a mean error fit, of which undoing a mistake is to make the most part of it vanish."""
+    return error_px < _FEW_PX or (error_px < _MOST_PX and not error_px > _SHARE * given_px)
 
 
 def examine(recording_at: RecordingAt, sigmas: HandSigmas, mistakes: Sequence[Mistake] | None = None) -> Examination:

@@ -51,6 +51,10 @@ def convention_findings(
     """
     examination = examine(recording_at, sigmas, mistakes)
     n_tried = len(examination.explanations) - 1
+    if not examination.is_mistaken and not examination.fits_as_given:
+        found = f"as given the points fit {_fit(examination.as_given)}, and undoing none of {n_tried} usual mistakes "
+        found += "with axes, signs, units and clocks makes them fit"
+        return [warning(_SUBJECT, found, "check the camera, the labels, and what hand_measured says, in m and deg")]
     if not examination.is_mistaken:
         told = f"of {n_tried} usual mistakes with axes, signs, units and clocks none explains the data better"
         return [ok(_SUBJECT, told)]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from linepose.check.conventions.examine import HandSigmas, examine
-from linepose.check.conventions.mistakes import GPS_MINUS_UTC_S, usual_mistakes
+from linepose.check.conventions.examine import Examination, Explanation, HandSigmas, examine
+from linepose.check.conventions.mistakes import AS_GIVEN, GPS_MINUS_UTC_S, usual_mistakes
 from unit.check.conventions.conftest import Recorded
 
 SIGMAS = HandSigmas(0.1, float(np.deg2rad(2.0)))
@@ -146,6 +146,16 @@ def test_clock_of_the_other_time_scale_is_named(recording, shift_s):
     assert best.mistake.clock_shift_s == shift_s
     assert "GPS" in best.mistake.name
     assert np.isnan(found.as_given.mean_error_px)
+
+
+@pytest.mark.parametrize(
+    ("given_px", "undone_px", "believed"),
+    [(3.0, 1.0, True), (200.0, 18.0, True), (50.0, 18.0, False), (824.0, 60.0, False), (np.nan, 4.0, True)],
+)
+def test_a_mistake_is_believed_only_where_undoing_it_makes_the_points_fit(given_px, undone_px, believed):
+    given = Explanation(AS_GIVEN, 1e4, given_px, np.zeros(6))
+    undone = Explanation(usual_mistakes()[0], 1e3, undone_px, np.zeros(6))
+    assert Examination((undone, given), given).is_mistaken == believed
 
 
 def test_points_behind_the_camera_are_no_explanation(recording):
