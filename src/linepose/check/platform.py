@@ -19,6 +19,7 @@ from linepose.check.finding import CheckReport, Finding, Level, PredictedSigma, 
 from linepose.check.flight import flight_findings
 from linepose.check.hand_measured import arm_findings, hand_findings
 from linepose.check.labels import count_findings, position_findings
+from linepose.check.map_frame import origin_findings
 from linepose.check.motion import motion_findings
 from linepose.check.points import file_findings, point_findings
 from linepose.check.prediction import predict
@@ -231,6 +232,7 @@ def _navigation_findings(
         log = record.log
         findings.append(contents.of_log(record, navigation.corrections))
         findings += position_findings(log.position_m, record.frame is None)
+        findings += origin_findings(settings.map_frame, log.position_m)
         findings += clock.rate_findings(log.time_us, navigation.maximum_pose_gap_s)
     if points is not None:
         time_us = points["time_us"].to_numpy()

@@ -142,10 +142,11 @@ def test_points_to_be_detected_are_left_to_the_run(scans):
     assert report.predicted == ()
     assert any("without labels" in finding.found for finding in report.findings)
     path = scans / "config" / "platforms" / "mine.yaml"
-    known = {"points": {"control_points": "control.csv"}}
+    known = {"points": {"control_points": "control.csv"}, "map_frame": {"origin": [-33.9, 151.2, 0.0]}}
     path.write_text(yaml.safe_dump(yaml.safe_load(path.read_text()) | known))
-    (fault,) = check_platform("mine", scans).of(Level.ERROR)
-    assert "control.csv: no such file" in fault.found
+    report = check_platform("mine", scans)
+    assert ["control.csv: no such file" in one.found for one in report.of(Level.ERROR)] == [True]
+    assert [one.subject for one in report.of(Level.WARNING)] == ["map frame"]  # the log is in northings
 
 
 def test_what_readers_pass_over_is_told_once(scans):
