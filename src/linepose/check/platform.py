@@ -159,6 +159,7 @@ def recorded_findings(
     more, recorded = _navigation_findings(settings, folder, points)
     findings += more
     if points is None:
+        findings += arm_findings(settings.start_pose()[:3])  # else told with what the points say of it
         findings += file_findings(settings, folder, recorded.log)
     if any(finding.level == Level.ERROR for finding in findings) or recorded.points is None:
         return findings, points, None

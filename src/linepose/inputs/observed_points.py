@@ -23,6 +23,7 @@ SCAN_POINTS: Final = pa.schema(
     [*whole_numbers("observation"), point_column(), *whole_numbers("time_us"), *floats("u_px", "line")]
 )
 _FEWEST_OBSERVATIONS: Final = 2
+_MANY: Final = 0.5  # share of the scans from which on they share the reason of having no board
 
 log = logging.getLogger(__name__)
 
@@ -76,18 +77,35 @@ def detected_points(
 ) -> pd.DataFrame:
     """Points of every scan in which the board and its ids are found; columns as in `SCAN_POINTS`.
 
-    A scan whose ids are in doubt is left out with a warning. Raises InputError naming a scan without a board.
+    A scan whose ids are in doubt is left out with a warning. Raises InputError naming all scans without a board.
     """
-    tables = []
+    tables, without = [], dict[int, Detection]()
     for number, path, scan, found in detected_in(scans, detector, n_pixels, line_times):
         if not found.board_found:
-            remedy = found.remedy or f"add {number} to source.left_out, or label the scan"
-            raise InputError(str(path), found.doubt, "a scan of the board", remedy)
+            without[number] = found
+            continue
         if found.doubt:
             log.warning("observation %d (%s) is left out: %s", number, path.name, found.doubt)
             continue
         tables.append(scan_points(number, scan, found.point, found.position))
+    if without:
+        raise _without_board(scans, without)
     return _joined(tables, scans)
+
+
+def _without_board(scans: Mapping[int, Path], without: Mapping[int, Detection]) -> InputError:
+    """The error of scans without a board: where most are without, the reason is one that they share."""
+    number, first = next(iter(without.items()))
+    named = ", ".join(map(str, without))
+    leave_out = f"add {named} to source.left_out, or label the scan{'s' if len(without) > 1 else ''}"
+    is_many = len(without) >= _MANY * len(scans)
+    remedy = first.remedy if is_many and first.remedy else leave_out
+    if len(without) == 1:
+        return InputError(str(scans[number]), first.doubt, "a scan of the board", remedy)
+    found = f"{len(without)} of {len(scans)} scans without the board: observation {named}; the first: {first.doubt}"
+    if is_many and not first.remedy:
+        remedy = f"check target, or {leave_out}"
+    return InputError(str(scans[number].parent), found, "scans of the board", remedy)
 
 
 def detected_in(

@@ -18,7 +18,7 @@ from linepose.pipeline.adjusted_schemas import LEVELS, MEASUREMENTS, VIEWS
 from linepose.pipeline.calibration import HAND_MEASURED, INLIERS, Calibration
 from linepose.pipeline.checks import AdjustedEvidence, DoubtfulView, Evidence, LostMeasurement
 from linepose.pipeline.navigation_checks import EXACT
-from linepose.pipeline.pose_tables import PoseNumber, rotation_vector_numbers
+from linepose.pipeline.pose_tables import PoseNumber, euler_numbers, rotation_vector_numbers
 from linepose.pipeline.residual_tables import intraclass_correlation
 from linepose.pipeline.results import Results
 from linepose.pipeline.table_checks import accepted_rows, stage_rows
@@ -34,8 +34,18 @@ _LEAVE_ONE_OUT: Final = pa.schema([*whole_numbers("left_out"), *floats("influenc
 
 def pose_numbers(calibration: Calibration) -> list[PoseNumber]:
     """The six numbers of the pose beside the hand measurement, and the truth where it is known."""
-    hand = PoseWithCovariance(calibration.hand_measured.pose, calibration.hand_measured.covariance)
-    return rotation_vector_numbers(calibration.estimate, hand, calibration.true_pose, hand_counts(calibration))
+    return rotation_vector_numbers(
+        calibration.estimate, _by_hand(calibration), calibration.true_pose, hand_counts(calibration)
+    )
+
+
+def angles(calibration: Calibration) -> list[PoseNumber]:
+    """Roll, pitch and yaw beside the hand measurement, as `euler_numbers`."""
+    return euler_numbers(calibration.estimate, _by_hand(calibration), calibration.true_pose, hand_counts(calibration))
+
+
+def _by_hand(calibration: Calibration) -> PoseWithCovariance:
+    return PoseWithCovariance(calibration.hand_measured.pose, calibration.hand_measured.covariance)
 
 
 def hand_counts(calibration: Calibration) -> bool:
@@ -54,7 +64,7 @@ def gather_evidence(calibration: Calibration) -> Evidence:
     outliers = calibration.outlier_removal
     accepted = accepted_rows(outliers)
     worst = accepted.loc[accepted["error_px"].idxmax()]
-    farthest_by_hand = max(numbers, key=lambda number: abs(number.difference_sigmas))
+    farthest_by_hand = max([*numbers, *angles(calibration)], key=lambda number: abs(number.difference_sigmas))
     decided = _decided(calibration)
     wrong = max(numbers, key=lambda number: abs(number.error_sigmas or 0.0))
     most_influential, influence = _influence(results)

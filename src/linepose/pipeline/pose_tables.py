@@ -1,6 +1,7 @@
 """The pose as people ask for it: rotation vector and Euler angles, beside the hand measurement."""
 
 import math
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -72,8 +73,10 @@ def euler_numbers(
 ) -> list[PoseNumber]:
     """Roll, pitch, yaw (zyx intrinsic) in degrees; none where the pitch is too near 90 deg to tell them apart."""
     poses = [estimate.pose, hand.pose] + ([] if truth is None else [truth])
-    if any(abs(np.degrees(euler_pose(pose)[4])) > _GIMBAL_DEG for pose in poses):
-        return []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of angles that cannot be told apart: they are left out
+        if any(abs(np.degrees(euler_pose(pose)[4])) > _GIMBAL_DEG for pose in poses):
+            return []
     scale = np.diag([1.0] * 3 + [float(np.degrees(1.0))] * 3)
     in_euler = [
         PoseWithCovariance(scale @ euler_pose(one.pose), scale @ euler_covariance(one.pose, one.covariance) @ scale)

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 from linepose.arrays import Floats
 from linepose.estimation.noise_models import noise_model
-from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.pipeline.calibration import Calibration
-from linepose.pipeline.evidence import gather_evidence, hand_counts, pose_numbers
-from linepose.pipeline.pose_tables import PoseNumber, euler_numbers
+from linepose.pipeline.evidence import angles, gather_evidence, pose_numbers
+from linepose.pipeline.pose_tables import PoseNumber
 from linepose.pipeline.verdict import Verdict, judge
 
 
@@ -53,7 +52,6 @@ class PlatformSummary:
 
 def summarise(calibration: Calibration) -> PlatformSummary:
     """The summary of a calibration with all its stages; raises InputError for a result that cannot be used."""
-    hand = PoseWithCovariance(calibration.hand_measured.pose, calibration.hand_measured.covariance)
     evidence = gather_evidence(calibration)
     description = calibration.platform.description if calibration.platform else ""
     return PlatformSummary(
@@ -62,7 +60,7 @@ def summarise(calibration: Calibration) -> PlatformSummary:
         noise_model=calibration.noise_model,
         verdict=judge(evidence),
         rotation_vector=pose_numbers(calibration),
-        euler=euler_numbers(calibration.estimate, hand, calibration.true_pose, hand_counts(calibration)),
+        euler=angles(calibration),
         quaternion=calibration.quaternion_wxyz,
         n_observations=evidence.n_observations,
         n_accepted=evidence.n_accepted,

@@ -8,7 +8,7 @@ from PIL import Image
 from linepose.errors import InputError
 from linepose.inputs.labels.labels import read_labels
 from linepose.inputs.observed_points import SCAN_POINTS, detected_points, refined_points, select_scans
-from linepose.inputs.targets.detect import ring_detector
+from linepose.inputs.targets.detect import Detection, ring_detector
 from linepose.inputs.targets.refine import METHODS
 from linepose.survey.targets.rings import RingsSection
 
@@ -121,6 +121,24 @@ def test_scan_without_a_board_is_named(folder):
     save(folder, "b", np.random.default_rng(0).uniform(400, 900, SHAPE))
     with pytest.raises(InputError, match=r"b\.png: found no board: .*; add 2 to source\.left_out"):
         detected_points(select_scans(folder, "*.png", []), RINGS, SHAPE[1])
+
+
+def test_all_scans_without_a_board_are_named_in_one_line(folder):
+    for name in "ab":
+        save(folder, name, np.random.default_rng(0).uniform(400, 900, SHAPE))
+    told = rf"{folder}: found 2 of 3 scans without the board: observation 1, 2; .* check target, or add 1, 2 to source"
+    with pytest.raises(InputError, match=told):
+        detected_points(select_scans(folder, "*.png", []), RINGS, SHAPE[1])
+
+
+@pytest.mark.parametrize(("n_without", "told"), [(1, "add 1 to source.left_out"), (2, "turn the axes")])
+def test_what_most_scans_share_is_told_before_leaving_them_out(folder, n_without, told):
+    nothing = Detection(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), "no print", False, "turn the axes")
+    bare = set("abc"[:n_without])
+    with pytest.raises(InputError, match=told):
+        detected_points(
+            select_scans(folder, "*.png", []), lambda scan: nothing if scan.name in bare else RINGS(scan), SHAPE[1]
+        )
 
 
 def test_fewer_than_two_detected_observations(folder):

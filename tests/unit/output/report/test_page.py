@@ -17,7 +17,7 @@ from linepose.geometry.pose_with_covariance import PoseWithCovariance
 from linepose.output.figures.registry import FIGURES
 from linepose.output.report.pictures import embedded
 from linepose.output.report.provenance import settings_text
-from linepose.pipeline.evidence import gather_evidence, tilt_spread_deg
+from linepose.pipeline.evidence import angles, gather_evidence, pose_numbers, tilt_spread_deg
 from linepose.survey.observations import survey_from_table
 from unit import made_up
 
@@ -159,6 +159,13 @@ def test_verdict_and_table_of_the_prior_agree_on_what_the_data_decide(results):
     assert table.loc["r_z_m", "decided_by"] == "prior"
     evidence = gather_evidence(calibration)
     assert (evidence.undecided, evidence.decided_by_both) == (("r_z",), ("r_x", "r_y"))
+
+
+def test_the_verdict_names_the_farthest_of_all_numbers_in_the_table(results):
+    evidence, shown = gather_evidence(results), [*pose_numbers(results), *angles(results)]
+    assert len(shown) == 9
+    farthest = max(shown, key=lambda one: abs(one.difference_sigmas))
+    assert (evidence.hand_parameter, evidence.hand_sigmas) == (farthest.name, abs(farthest.difference_sigmas))
 
 
 def test_tilt_spread_of_level_observations_is_zero():
