@@ -163,4 +163,4 @@ def _check_camera(camera: Camera) -> None:
         raise InputError(fault.key, fault.found, fault.expected, fault.remedy)
     for name, value in camera.sigmas:
         if value is not None and not (np.isfinite(value) and value >= 0):
-            raise InputError(f"camera.sigmas.{name}", f"{value}", "a positive number", "give how well it is known")
+            raise InputError(f"camera.sigmas.{name}", f"{value}", "a number of 0 or more", "give how well it is known")

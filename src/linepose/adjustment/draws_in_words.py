@@ -39,8 +39,8 @@ def draws_in_words(effective_draws: float, pareto_shape: float) -> DrawsInWords:
         )
     if heavy:
         return DrawsInWords(
-            f"{found}, where {TRUSTED_SHAPE:g} or less is to be trusted: sigmas may be off by some 10 %",
-            "the levels are known so loosely that sigmas may be off by some 10 %",
+            f"{found}, where {TRUSTED_SHAPE:g} or less is to be trusted",
+            "the levels are known too loosely for sigmas to be trusted",
             "Add views, with other motions; more draws do not help.",
         )
     return DrawsInWords(found)

@@ -149,6 +149,13 @@ def test_points_to_be_detected_are_left_to_the_run(scans):
     assert [one.subject for one in report.of(Level.WARNING)] == ["map frame"]  # the log is in northings
 
 
+def test_a_tape_in_millimetres_is_told_before_points_are_detected(scans):
+    settings(scans, source={"points": "detection"}, hand_measured={"position_m": [200.0, 0.0, -800.0]})
+    (told,) = check_platform("mine", scans).of(Level.ERROR)
+    assert told.subject == "hand measurement"
+    assert "in metres" in told.advice
+
+
 def test_what_readers_pass_over_is_told_once(scans):
     path = scans / "data" / "mine" / "navigation.parquet"
     for header in (scans / "data" / "mine" / "scans").glob("*.hdr"):
