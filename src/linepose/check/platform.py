@@ -150,7 +150,7 @@ def recorded_findings(
     if isinstance(source, LabelledViewsSection):
         more, points = view_findings(source, folder, n_pixels)
     else:
-        more, points = scan_findings(source, folder, n_pixels)
+        more, points = scan_findings(source, folder, n_pixels, root / "results" / platform)
         more = [*more, *target_findings(settings.target, settings.intrinsics(), source)]
     findings += more
     if points is not None:

@@ -1,6 +1,6 @@
 """Scans, their time stamps and labels, from headers and small files; pixels are read around labels alone."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,18 +13,22 @@ from linepose.check.finding import Finding, Level, error, numbers, of_fault, of_
 from linepose.check.labels import sensor_findings
 from linepose.errors import InputError
 from linepose.inputs.labels import read_point_labels
-from linepose.inputs.observed_points import select_scans
+from linepose.inputs.observed_points import SCAN_POINTS, select_scans
 from linepose.inputs.scans import header_time
 from linepose.inputs.scans.line_times import line_times_of
 from linepose.inputs.scans.scan_files import scan_size
 from linepose.inputs.source import ScansSection
 from linepose.inputs.targets.refine import AS_LABELLED, REFINEMENTS
+from linepose.tables import read_table
 
 
-def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[list[Finding], pd.DataFrame | None]:
+def scan_findings(
+    source: ScansSection, folder: Path, n_pixels: int, results: Path | None = None
+) -> tuple[list[Finding], pd.DataFrame | None]:
     """Findings on scans and labels, and the labelled points with times: observation, point, time_us, u_px, line.
 
-    The points are as labelled, not refined; none where they are found without labels, or cannot be used.
+    The points are as labelled, not refined; of a target that is found without labels those that the last run found, in
+    `results`. None where there are none, or they cannot be used.
     """
     try:
         scans = select_scans(folder, source.scans, source.left_out)
@@ -53,10 +57,19 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
             findings.append(contents.of_scans(scans, times))
         except InputError as fault:
             findings.append(of_fault("scans", fault))
+    detected = _detected(source, results, list(scans.values()))
+    if detected is not None:
+        label_findings, points = _timed(detected[detected["observation"].isin(times)], times, n_pixels)
+        told = ok(
+            "labels", f"points are found without labels; those of the last run count: {len(detected)} measurements"
+        )
+        return [*findings, told, *label_findings], points
     if source.points != "labels":
         found = (
-            "points are found without labels: their numbers, conventions and predicted sigmas are known after "
-            "the run's extraction"
+            "points are found without labels: their numbers, conventions and predicted sigmas are looked at once a run "
+            "has found them; check again then"
+            if source.points == "detection"
+            else "points are matched by the run: its verdict tells what it finds of conventions and sigmas"
         )
         return [*findings, ok("labels", found)], None
     try:
@@ -73,6 +86,19 @@ def scan_findings(source: ScansSection, folder: Path, n_pixels: int) -> tuple[li
     if points is not None and source.refinement != AS_LABELLED:
         label_findings += dot_findings(scans, labels, REFINEMENTS[source.refinement])
     return [*findings, *label_findings], points
+
+
+def _detected(source: ScansSection, results: Path | None, scans: Sequence[Path]) -> pd.DataFrame | None:
+    """What the last run found of a target without labels; None where nothing, or before the scans were written."""
+    found = None if results is None else results / "points.parquet"
+    if source.points != "detection" or found is None or not found.is_file():
+        return None
+    if any(path.stat().st_mtime > found.stat().st_mtime for path in scans):
+        return None
+    try:
+        return read_table(found, SCAN_POINTS)
+    except InputError:  # of another version: the run makes it anew
+        return None
 
 
 def _header_starts(scans: Iterable[Path]) -> dict[str, int]:

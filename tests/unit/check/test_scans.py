@@ -1,7 +1,9 @@
 """Scans, their time stamps and labels, checked without a look at any picture."""
 
+import os
 import re
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,8 @@ from linepose.config.new_platform import NewPlatform, write_platform
 from linepose.config.new_project import make_project
 from linepose.config.platform import load_platform
 from linepose.inputs.gps_time import gps_from_unix
+from linepose.inputs.observed_points import SCAN_POINTS
+from linepose.tables import write_table
 from unit.check.conftest import CONFIG
 from unit.recorded_files import write_scan_files
 
@@ -147,6 +151,27 @@ def test_points_to_be_detected_are_left_to_the_run(scans):
     report = check_platform("mine", scans)
     assert ["control.csv: no such file" in one.found for one in report.of(Level.ERROR)] == [True]
     assert [one.subject for one in report.of(Level.WARNING)] == ["map frame"]  # the log is in northings
+
+
+def test_points_that_the_last_run_detected_count(scans):
+    settings(scans, source={"points": "detection"})
+    platform = load_platform(scans / "config" / "platforms", "mine")
+    source, folder = platform.source, scans / "data" / "mine"
+    found = scans / "results" / "mine" / "points.parquet"
+    found.parent.mkdir(parents=True)
+    _, labelled = scan_findings(source.model_copy(update={"points": "labels"}), folder, 648)
+    write_table(labelled, found, SCAN_POINTS)
+    report = check_platform("mine", scans)
+    assert report.of(Level.ERROR) == ()
+    assert len(report.predicted) == 6
+    path = folder / "navigation.parquet"
+    log = pd.read_parquet(path)
+    log.assign(roll_rad=-log["roll_rad"]).to_parquet(path, index=False)
+    told = [one for one in check_platform("mine", scans).findings if one.subject == "conventions"]
+    assert any("roll" in one.found and "roll_sign" in one.advice for one in told)
+    for scan in (folder / "scans").glob("*.hdr"):  # scans that are newer than what was found in others
+        os.utime(scan, ns=(time.time_ns() + 10**10,) * 2)
+    assert check_platform("mine", scans).predicted == ()
 
 
 def test_a_tape_in_millimetres_is_told_before_points_are_detected(scans):
