@@ -94,7 +94,7 @@ def ground_of(calibration: Calibration, section: "MapSection", frame: "SurveyMap
     if sigma_m is not None:
         return plane
     down = list(POSITION_COVARIANCE_INDICES).index((2, 2))
-    variance = float(np.nanmean(points[POINT_COVARIANCE_COLUMNS[down]].to_numpy(dtype=float)))
-    of_points_m = float(np.sqrt(variance)) if variance > 0 else 0.0
+    known = points[POINT_COVARIANCE_COLUMNS[down]].dropna()  # of many points none is told: their spread has it
+    of_points_m = float(np.sqrt(known.mean())) if len(known) else 0.0
     of_pose_m = float(calibration.sigma[2])  # the points' heights were found by this camera, and err with its own
     return Ground(float(np.linalg.norm([plane.sigma_m, of_points_m, of_pose_m])), plane.normal, plane.offset)
